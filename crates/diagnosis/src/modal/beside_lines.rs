@@ -134,7 +134,9 @@ impl ModalJudgement {
         let named = |effect: &Effect| effect.is_named_as(own);
         let is_listed = finding.alternatives.iter().any(|(effect, _)| named(effect));
         let little = self.features.tells_little(&fitter.settings.modal);
-        if !self.names_all() || little || named(&finding.effect) || is_listed {
+        // Without any error of the model lines are right to tell the two apart.
+        let may_err = !self.search.best.exact;
+        if !(self.names_all() && may_err) || little || named(&finding.effect) || is_listed {
             return findings;
         }
         let stated = finding.stated();

@@ -9,6 +9,8 @@ use crate::modal::features::Features;
 use crate::modal::fit::{ANY, ModalFit, SetOut};
 use crate::modal::judgement::ModalJudgement;
 use crate::modal::prior::{Prior, priors, priors_among};
+use crate::modal::search::ModalSearch;
+use crate::modal::searcher::Named;
 use crate::modal::sizes::known;
 use crate::search::Search;
 use crate::settings::Settings;
@@ -429,6 +431,11 @@ fn one_finding_of_the_lines_is_no_more_probable_than_the_name_that_the_modes_hol
         evidence: Evidence { gain: 0.0, elsewhere: Vec::new(), measured: None },
     };
     judged_lump(|fitter, lump, judged| {
+        let so_exact = |exact: bool| {
+            let best = Named { exact, ..judged.search.best.clone() };
+            ModalJudgement { search: ModalSearch { best, ..judged.search.clone() }, ..judged.clone() }
+        };
+        let (exact, judged) = (so_exact(true), so_exact(false));
         let [found] = &judged.with_its_own_name(fitter, vec![finding(&other)])[..] else { panic!() };
         assert!((found.probability - 0.45).abs() < 1e-12 && (found.stated() - 0.96).abs() < 1e-12);
         assert!(found.alternatives[0].0.is_named_as(lump) && (found.alternatives[0].1 - 0.48).abs() < 1e-12);
@@ -440,5 +447,10 @@ fn one_finding_of_the_lines_is_no_more_probable_than_the_name_that_the_modes_hol
         };
         assert!(unchanged(vec![finding(lump)]), "the modes' own name");
         assert!(unchanged(vec![finding(&other), finding(&third)]), "modes have one name for two findings");
+        let kept = exact.with_its_own_name(fitter, vec![finding(&other)]);
+        assert_eq!(
+            kept[0].probability, 0.9,
+            "where no error of the model is needed lines tell what they find"
+        );
     });
 }
