@@ -5,7 +5,7 @@ use crate::fitter::Fitter;
 use crate::{Hypothesis, Linearisation};
 use jointscope_fixture::Effect;
 use jointscope_inference::{dot, each, whitened};
-use jointscope_linalg::solve_positive_definite;
+use jointscope_linalg::Cholesky;
 use num_complex::Complex64;
 use std::borrow::Cow;
 
@@ -17,7 +17,8 @@ pub(crate) struct Scan<'a> {
     /// √w·derivative by coordinate.
     columns: Vec<Vec<f64>>,
     weights: Cow<'a, [f64]>,
-    matrix: Vec<f64>,
+    /// Of the tolerances' information, which all that is tried shares; `None` where a combination of them is not determined.
+    factor: Option<Cholesky>,
     predicted: Vec<Complex64>,
     /// What the base leaves, √w·residual, and what the tolerances make of it.
     residual: Vec<f64>,
@@ -47,7 +48,7 @@ impl<'a> Scan<'a> {
             linear,
             columns,
             weights,
-            matrix: equations.information,
+            factor: Cholesky::of(equations.order, &equations.information),
             predicted,
             residual,
             step,
@@ -75,12 +76,12 @@ impl<'a> Scan<'a> {
         let change: Vec<Complex64> = moved.iter().zip(&self.predicted).map(|(m, p)| m - p).collect();
         let change = whitened(&change, &self.weights);
         let shared: Vec<f64> = self.columns.iter().map(|column| dot(column, &change)).collect();
-        let (mut matrix, mut absorbed) = (self.matrix.clone(), shared.clone());
-        if !solve_positive_definite(&mut matrix, &mut absorbed) {
-            return nothing;
-        }
+        let Some(factor) = &self.factor else { return nothing };
+        // bᵀ A⁻¹ b = |L⁻¹ b|²
+        let mut absorbed = shared.clone();
+        factor.solve_lower_in_place(&mut absorbed);
         let own = dot(&change, &change);
-        let left = own - dot(&shared, &absorbed);
+        let left = own - dot(&absorbed, &absorbed);
         // What the tolerances can imitate to nine digits is not to be told from them.
         if left <= 1e-9 * own {
             return nothing;
@@ -102,12 +103,10 @@ impl<'a> Scan<'a> {
         let residual = whitened(&self.fitter.observation.residual(&predicted), &self.weights);
         let misfit = dot(&residual, &residual);
         let pull = |m: usize| self.base.prior(m) * self.base.coordinates[m];
-        let right: Vec<f64> =
+        let Some(factor) = &self.factor else { return misfit };
+        let mut right: Vec<f64> =
             self.columns.iter().enumerate().map(|(m, column)| dot(column, &residual) - pull(m)).collect();
-        let (mut matrix, mut step) = (self.matrix.clone(), right.clone());
-        if !solve_positive_definite(&mut matrix, &mut step) {
-            return misfit;
-        }
-        misfit + self.base.penalty() - dot(&step, &right)
+        factor.solve_lower_in_place(&mut right);
+        misfit + self.base.penalty() - dot(&right, &right)
     }
 }

@@ -260,12 +260,12 @@ impl Assembly {
 
     /// Adds `weight` times the station's participation in each mode to `all`.
     pub(crate) fn add_participation(&self, station: &Station, weight: f64, all: &mut [f64]) {
-        let mut row = self.station_row(station);
-        if let Some(turned) = &self.turned {
-            turned.scale(&mut row);
-        }
         // A station reads a few coordinates only.
-        let read: Vec<(usize, f64)> = row.into_iter().enumerate().filter(|(_, t)| *t != 0.0).collect();
+        let mut read = Vec::with_capacity(2);
+        self.places[station.body].add_entries(station.x, station.dof, &mut read);
+        if let Some(turned) = &self.turned {
+            turned.scale(&mut read);
+        }
         let of_mode = |r: usize| {
             let shape = self.basis.shape(r);
             read.iter().map(|(i, t)| shape[*i] * t).sum::<f64>()

@@ -150,28 +150,39 @@ impl Assembly {
         for (row, motion) in change.mixing.chunks_exact(n).zip(participation) {
             all.iter_mut().zip(row).for_each(|(all, share)| *all += share * motion);
         }
-        let here = self.read(&self.places, before);
-        let there = self.read(&change.places, after);
-        // Sums before differences: what stays the same leaves exactly nothing, which stiff joints would multiply.
-        let row = there.iter().zip(&here).map(|(there, here)| (there - here) / change.step);
-        for (i, t) in row.enumerate().filter(|(_, t)| *t != 0.0) {
-            all.iter_mut().enumerate().for_each(|(r, all)| *all += self.basis.shape(r)[i] * t);
+        let here = read(&self.places, before);
+        let there = read(&change.places, after);
+        let at =
+            |row: &[(usize, f64)], i: usize| row.iter().find(|(at, _)| *at == i).map_or(0.0, |(_, t)| *t);
+        let mut places: Vec<usize> = here.iter().chain(&there).map(|(i, _)| *i).collect();
+        places.sort_unstable();
+        places.dedup();
+        for i in places {
+            // Sums before differences: what stays the same leaves exactly nothing, which stiff joints would multiply.
+            let t = (at(&there, i) - at(&here, i)) / change.step;
+            if t != 0.0 {
+                all.iter_mut().enumerate().for_each(|(r, all)| *all += self.basis.shape(r)[i] * t);
+            }
         }
         all
     }
+}
 
-    /// The row that reads weighted motions where coordinates stand at `places`.
-    fn read<'s>(
-        &self,
-        places: &[Coordinates],
-        parts: impl IntoIterator<Item = &'s (f64, Station)>,
-    ) -> Vec<f64> {
-        let (mut row, mut of_part) = (vec![0.0; self.order], vec![0.0; self.order]);
-        for (weight, part) in parts {
-            of_part.fill(0.0);
-            places[part.body].read(part.x, part.dof, &mut of_part);
-            row.iter_mut().zip(&of_part).for_each(|(row, t)| *row += weight * t);
+/// The row that reads weighted motions where coordinates stand at `places`: its few entries by their place.
+fn read<'s>(
+    places: &[Coordinates],
+    parts: impl IntoIterator<Item = &'s (f64, Station)>,
+) -> Vec<(usize, f64)> {
+    let (mut row, mut of_part): (Vec<(usize, f64)>, _) = (Vec::new(), Vec::with_capacity(2));
+    for (weight, part) in parts {
+        of_part.clear();
+        places[part.body].add_entries(part.x, part.dof, &mut of_part);
+        for &(i, t) in &of_part {
+            match row.iter_mut().find(|(at, _)| *at == i) {
+                Some((_, sum)) => *sum += weight * t,
+                None => row.push((i, weight * t)),
+            }
         }
-        row
     }
+    row
 }

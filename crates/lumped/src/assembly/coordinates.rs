@@ -27,6 +27,26 @@ impl Coordinates {
         }
     }
 
+    /// Adds what a component of the motion at `x` reads of the assembly's coordinates to `entries`: the few that are not zero, by their place, ascending.
+    pub(super) fn add_entries(&self, x: f64, dof: Dof, entries: &mut Vec<(usize, f64)>) {
+        match (self, dof) {
+            (Coordinates::Rigid { first, x_cg }, Dof::Translation) => {
+                entries.push((*first, 1.0));
+                let arm = x - x_cg;
+                entries.extend((arm != 0.0).then_some((first + 1, arm)));
+            }
+            (Coordinates::Rigid { first, .. }, Dof::Rotation) => entries.push((first + 1, 1.0)),
+            (Coordinates::Translating { first }, Dof::Translation) => entries.push((*first, 1.0)),
+            (Coordinates::Translating { .. }, Dof::Rotation) => {}
+            (Coordinates::Beam { first, mesh }, dof) => {
+                let mut row = vec![0.0; mesh.coordinates()];
+                mesh.interpolate(x, dof, &mut row);
+                let read = row.into_iter().enumerate().filter(|(_, t)| *t != 0.0);
+                entries.extend(read.map(|(i, t)| (first + i, t)));
+            }
+        }
+    }
+
     /// Writes what a component of the motion at `x` reads of the assembly's coordinates into `row`, which covers them all.
     pub(super) fn read(&self, x: f64, dof: Dof, row: &mut [f64]) {
         match (self, dof) {

@@ -29,9 +29,9 @@ impl Matrices {
             all.add_joint(fixture, joint, places);
         }
         for held in held_by_modes(fixture) {
-            let mut row = vec![0.0; order];
-            places[held.station.body].read(held.station.x, held.station.dof, &mut row);
-            add_product(&mut all.stiffness, &row, held.stiffness);
+            let mut read = Vec::new();
+            places[held.station.body].add_entries(held.station.x, held.station.dof, &mut read);
+            add_product(&mut all.stiffness, order, &read, held.stiffness);
         }
         all
     }
@@ -54,9 +54,9 @@ impl Matrices {
             _ => {}
         }
         for point in &body.masses {
-            let mut row = vec![0.0; self.order];
-            place.read(point.x.value, Dof::Translation, &mut row);
-            add_product(&mut self.mass, &row, point.mass.value);
+            let mut read = Vec::new();
+            place.add_entries(point.x.value, Dof::Translation, &mut read);
+            add_product(&mut self.mass, self.order, &read, point.mass.value);
         }
     }
 
@@ -81,19 +81,21 @@ impl Matrices {
     fn add_joint(&mut self, fixture: &Fixture, joint: &Joint, places: &[Coordinates]) {
         let length = fixture.joint_length(joint);
         let matrix = from_end_stiffness(nominal_stiffness(&joint.law, length), length);
-        let mut row = vec![0.0; self.order];
-        let mut read = |point: usize, dof: Dof| {
-            let point = &fixture.points()[point];
-            row.fill(0.0);
-            places[point.body].read(point.x.value, dof, &mut row);
-            not_zero(&row)
-        };
-        let ends =
-            [joint.from, joint.to].map(|point| [Dof::Translation, Dof::Rotation].map(|dof| (point, dof)));
-        let rows = ends.as_flattened().iter().map(|&(point, dof)| read(point, dof)).collect::<Vec<_>>();
+        // The entries of all four motions at its ends, one motion's after another's.
+        let mut read: Vec<(usize, f64)> = Vec::with_capacity(8);
+        let mut until = [0; 5];
+        for (motion, (point, dof)) in [joint.from, joint.to]
+            .into_iter()
+            .flat_map(|point| [Dof::Translation, Dof::Rotation].map(|dof| (&fixture.points()[point], dof)))
+            .enumerate()
+        {
+            places[point.body].add_entries(point.x.value, dof, &mut read);
+            until[motion + 1] = read.len();
+        }
+        let of = |motion: usize| &read[until[motion]..until[motion + 1]];
         for (a, b) in (0..4).flat_map(|a| (0..4).map(move |b| (a, b))) {
-            for &(i, of_a) in &rows[a] {
-                for &(j, of_b) in &rows[b] {
+            for &(i, of_a) in of(a) {
+                for &(j, of_b) in of(b) {
                     self.stiffness[i * self.order + j] += of_a * matrix[a][b] * of_b;
                 }
             }
@@ -101,16 +103,10 @@ impl Matrices {
     }
 }
 
-/// The few entries of a row that are not zero, with their places.
-fn not_zero(row: &[f64]) -> Vec<(usize, f64)> {
-    row.iter().copied().enumerate().filter(|(_, t)| *t != 0.0).collect()
-}
-
-/// Adds `factor` times the product of a row, of which few entries are not zero, with itself.
-fn add_product(matrix: &mut [f64], row: &[f64], factor: f64) {
-    let read = not_zero(row);
-    for (i, a) in &read {
-        read.iter().for_each(|(j, b)| matrix[i * row.len() + j] += factor * a * b);
+/// Adds `factor` times the product of a row of so many coordinates, of which few entries are not zero, with itself.
+fn add_product(matrix: &mut [f64], order: usize, read: &[(usize, f64)], factor: f64) {
+    for (i, a) in read {
+        read.iter().for_each(|(j, b)| matrix[i * order + j] += factor * a * b);
     }
 }
 

@@ -11,9 +11,9 @@ pub(super) struct Turned {
 }
 
 impl Turned {
-    /// What a row that reads coordinates reads of the basis.
-    pub(super) fn scale(&self, row: &mut [f64]) {
-        row.iter_mut().zip(&self.scales).for_each(|(t, scale)| *t *= scale);
+    /// What entries of a row that reads coordinates, by their place, read of the basis.
+    pub(super) fn scale(&self, entries: &mut [(usize, f64)]) {
+        entries.iter_mut().for_each(|(place, t)| *t *= self.scales[*place]);
     }
 
     /// Adds `weight` times the participation of a motion, which the basis itself answers with `own`.

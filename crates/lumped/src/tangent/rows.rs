@@ -8,8 +8,9 @@ use jointscope_damping::DampingLaw;
 use jointscope_linalg::Field;
 use num_complex::Complex64;
 
-/// Entries that are summed together: each function that is fetched serves in several sums.
-pub(super) const TILE: usize = 4;
+/// Entries that are summed together, by the first of these numbers that leaves the fewest places of the last tile empty: each function that is fetched serves in several sums. A change of rank one
+/// between two outputs and two inputs has nine.
+const TILES: [usize; 2] = [4, 3];
 /// A change of damping beside that by its law is none below these shares of the latter and of the damping itself: what differences leave of it.
 const ROUNDING: (f64, f64) = (1e-5, 1e-9);
 
@@ -35,34 +36,49 @@ struct ByLaw {
     is_structural: bool,
 }
 
-/// Coefficients of the first functions for each of several entries, [`TILE`] entries side by side.
+/// Coefficients of the first functions for each of several entries, a tile of entries side by side.
 #[derive(Debug, Clone)]
 pub(super) struct Coefficients {
     entries: usize,
     rows: usize,
-    tiles: Vec<[f64; TILE]>,
+    /// Entries of a tile.
+    tile: usize,
+    /// A row of a tile's entries for each function, tile after tile.
+    values: Vec<f64>,
 }
 
 impl Coefficients {
     fn zero(entries: usize, rows: usize) -> Self {
-        Coefficients { entries, rows, tiles: vec![[0.0; TILE]; entries.div_ceil(TILE) * rows] }
+        let fewer = |tile: usize, other: usize| {
+            if entries.next_multiple_of(other) < entries.next_multiple_of(tile) { other } else { tile }
+        };
+        let tile = TILES.into_iter().reduce(fewer).unwrap_or(1);
+        Coefficients { entries, rows, tile, values: vec![0.0; entries.next_multiple_of(tile) * rows] }
     }
 
     fn add(&mut self, entry: usize, row: usize, value: f64) {
-        self.tiles[entry / TILE * self.rows + row][entry % TILE] += value;
+        self.values[(entry / self.tile * self.rows + row) * self.tile + entry % self.tile] += value;
     }
 
     /// The number of entries, as many as fill the last tile.
     pub(super) fn padded(&self) -> usize {
-        self.entries.next_multiple_of(TILE)
+        self.entries.next_multiple_of(self.tile)
     }
 }
 
 /// Writes every entry on one block of lines over `entries`.
 #[inline(always)]
 pub(super) fn sums(coefficients: &Coefficients, functions: &[Lanes], entries: &mut [Lanes]) {
+    match coefficients.tile {
+        3 => sums_by::<3>(coefficients, functions, entries),
+        _ => sums_by::<4>(coefficients, functions, entries),
+    }
+}
+
+#[inline(always)]
+fn sums_by<const TILE: usize>(coefficients: &Coefficients, functions: &[Lanes], entries: &mut [Lanes]) {
     let functions = &functions[..coefficients.rows];
-    let tiles = coefficients.tiles.chunks_exact(coefficients.rows);
+    let tiles = coefficients.values.as_chunks::<TILE>().0.chunks_exact(coefficients.rows);
     for (tile, entries) in tiles.zip(entries.chunks_exact_mut(TILE)) {
         let mut sums = [Lanes::ZERO; TILE];
         for (function, coefficients) in functions.iter().zip(tile) {
