@@ -23,6 +23,7 @@
 //! * [`searcher`]: what all steps of a search share;
 //! * [`starts`]: where fits set out;
 //! * [`every_joint`]: what a model leaves out of every joint alike;
+//! * [`extended`]: fits of what a search has, with one effect more or with fewer;
 //! * [`search`]: every candidate, alone and beside others;
 //! * [`compared`]: a fixture compared with a recording, or with what has changed;
 //! * [`judgement`]: what it comes to: names with their probabilities and intervals, and errors;
@@ -42,6 +43,7 @@ mod descent;
 mod elsewhere;
 mod every_joint;
 mod evidence;
+mod extended;
 mod features;
 mod fit;
 mod judge;
