@@ -2,7 +2,8 @@
 //!
 //! A free fit explains filters, delays and sensors that load what they measure by residual terms of any phase. A structure has no such terms at low frequencies: below its modes it moves as
 //! rigid bodies do, in phase or in opposite phase with the force. So mass lines, and what modes below the band add, are real here. Modes in the band have any frequency, damping and
-//! complex residue, and what modes above the band add has any phase, for these are damped.
+//! complex residue, and what modes above the band add has any phase, for these are damped. Where dashpots hold the structure these add what falls with frequency a quarter of a turn away
+//! from the mass line; a high-pass does the same to one channel, and is not told from them there.
 
 use crate::basis::{Pole, power_of_term, row};
 use crate::recorded::RecordedModes;
@@ -60,8 +61,9 @@ impl Basis<'_> {
 }
 
 impl RecordedModes {
-    /// What errors of a structure's model, however large, leave of the `recording` that these modes are from, to first order about the poles of its free fit.
-    pub fn structural(&self, recording: Recording) -> Option<Structural> {
+    /// What errors of a structure's model, however large, leave of the `recording` that these modes are from, to first order about the poles of its free fit; of a structure that is
+    /// `held_by_dashpots` or not.
+    pub fn structural(&self, recording: Recording, held_by_dashpots: bool) -> Option<Structural> {
         let hz = recording.frfs.lines().hz();
         let first = hz.partition_point(|hz| *hz < self.band.0);
         let omegas: Vec<f64> = hz[first..].iter().map(|hz| TAU * hz).collect();
@@ -92,6 +94,9 @@ impl RecordedModes {
             let mut basis = Basis { weights, columns: Vec::new() };
             for (index, phases) in phases.iter().enumerate() {
                 phases.iter().for_each(|phase| basis.add(rows.iter().map(|row| row[index] * phase)));
+            }
+            if held_by_dashpots {
+                basis.add(omegas.iter().map(|omega| Complex64::new(0.0, lowest / omega)));
             }
             unknowns += basis.columns.len();
             let left = basis.left(recording.frfs.values(frf)[first..].iter().copied());

@@ -19,7 +19,7 @@ pub fn in_text(hz: f64) -> f64 {
 ///
 /// ```
 /// assert_eq!(jointscope_spectra::in_sentence(1034.375).to_string(), "1034");
-/// assert_eq!(jointscope_spectra::in_sentence(0.7812500).to_string(), "0.7813");
+/// assert_eq!(jointscope_spectra::in_sentence(0.78129).to_string(), "0.7813");
 /// ```
 pub fn in_sentence(hz: f64) -> f64 {
     to_digits(hz, 4)

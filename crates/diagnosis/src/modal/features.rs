@@ -6,6 +6,7 @@ use crate::settings::ModalSettings;
 use crate::settings::modal::recorded::SPARE_ORDERS;
 use crate::work::Work;
 use crate::{Hypothesis, Observation};
+use jointscope_fixture::Quantity;
 use jointscope_model_error::{RecordedModes, Recording, SizePrior, Structural};
 use jointscope_modes::ModesOptions;
 use std::sync::OnceLock;
@@ -16,6 +17,8 @@ pub(crate) struct Features {
     pub recorded: RecordedModes,
     values: Vec<f64>,
     pub known: SizePrior,
+    /// Whether the fixture has supports with dashpots.
+    held_by_dashpots: bool,
     /// Fitted when it is first asked for.
     structural: OnceLock<Option<Structural>>,
 }
@@ -27,13 +30,18 @@ impl Features {
         nominal: &Hypothesis,
         settings: &ModalSettings,
     ) -> Option<Self> {
-        let known = known(settings, &nominal.to_fixture().ok()?);
-        Some(Features::new(recorded(observation, nominal)?, known))
+        let fixture = nominal.to_fixture().ok()?;
+        let features = Features::new(recorded(observation, nominal)?, known(settings, &fixture));
+        let damps = |dashpot: &Option<Quantity>| dashpot.as_ref().is_some_and(|damping| damping.value > 0.0);
+        let mut supports = fixture.supports().iter();
+        let held_by_dashpots = supports.any(|s| damps(&s.damping) || damps(&s.rotational_damping));
+        Some(Features { held_by_dashpots, ..features })
     }
 
     /// Those of modes, with what is known of the sizes of error.
     pub(crate) fn new(recorded: RecordedModes, known: SizePrior) -> Self {
-        Features { values: recorded.features(), recorded, known, structural: OnceLock::new() }
+        let structural = OnceLock::new();
+        Features { values: recorded.features(), recorded, known, held_by_dashpots: false, structural }
     }
 
     /// What hypotheses are fitted to; the work done for that is counted in `work`.
@@ -49,7 +57,8 @@ impl Features {
 
     /// What errors of a structure's model, however large, leave of the recording.
     pub(crate) fn structural(&self, observation: &Observation) -> Option<Structural> {
-        *self.structural.get_or_init(|| self.recorded.structural(of(observation)))
+        let fitted = || self.recorded.structural(of(observation), self.held_by_dashpots);
+        *self.structural.get_or_init(fitted)
     }
 
     /// Whether the modes tell a part of the recording only.

@@ -44,16 +44,19 @@ pub(crate) fn blocks_with_sensor_at(x: f64, physics: &str) -> Fixture {
 
 /// Blocks on soft supports: two modes at 2.4 Hz and 3.2 Hz.
 pub(crate) fn suspended() -> Fixture {
-    Fixture::from_json(
-        r#"{ "bodies": { "A": { "mass": 2.1, "inertia": 1.9e-3, "x_cg": -0.03 },
+    suspended_by("1.0")
+}
+
+/// The same on dashpots of so many N·s/m.
+pub(crate) fn suspended_by(dashpot: &str) -> Fixture {
+    let fixture = r#"{ "bodies": { "A": { "mass": 2.1, "inertia": 1.9e-3, "x_cg": -0.03 },
                            "B": { "mass": 2.3, "inertia": 2.1e-3, "x_cg": 0.095 } },
           "points": { "1": { "body": "A", "x": -0.06 }, "2": { "body": "A", "x": 0 },
                        "3": { "body": "B", "x": 0.065 }, "4": { "body": "B", "x": 0.09 } },
           "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 } } },
           "supports": { "left": { "point": "1", "stiffness": 605.6, "damping": 1.0 }, "right": { "point": "4", "stiffness": 626.0, "damping": 1.0 } },
-          "damping": { "modal_ratios": [0.004, 0.006] } }"#,
-    )
-    .unwrap()
+          "damping": { "modal_ratios": [0.004, 0.006] } }"#;
+    Fixture::from_json(&fixture.replace("\"damping\": 1.0", &format!("\"damping\": {dashpot}"))).unwrap()
 }
 
 /// `count` masses of one kilogram in a row on springs of 5 MN/m: `count` − 1 elastic modes below 712 Hz.

@@ -5,11 +5,12 @@ use jointscope_fixture::Fixture;
 use jointscope_model_error::{Recording, Structural};
 use jointscope_spectra::SpectralLines;
 
-fn left(fixture: &Fixture, seed: u64) -> (Structural, f64) {
+/// What is left, and of how many degrees of freedom; of a structure that is held by dashpots, or not.
+fn left(fixture: &Fixture, held: bool, seed: u64) -> (Structural, f64) {
     let lines = SpectralLines::even(7.5, 2.5, 400).unwrap();
     let recorded = Recorded::of(fixture, &four(), &lines, noise(Some(seed)));
     let recording = Recording { frfs: &recorded.set, weights: &recorded.weights };
-    let structural = recorded.modes().structural(recording).unwrap();
+    let structural = recorded.modes().structural(recording, held).unwrap();
     let lines = lines.hz().iter().filter(|hz| **hz >= structural.from).count();
     (structural, (8 * lines - structural.unknowns) as f64)
 }
@@ -25,7 +26,7 @@ fn of_any_structure_no_more_than_noise_is_left() {
         ("glued", blocks(glue)),
     ] {
         for seed in 1..4 {
-            let (structural, degrees) = left(&fixture, seed);
+            let (structural, degrees) = left(&fixture, name == "suspended", seed);
             let excess = (structural.chi2 - degrees) / (2.0 * degrees).sqrt();
             assert!(excess.abs() < 4.0, "{name}: {} of {degrees}", structural.chi2);
         }
@@ -37,7 +38,18 @@ fn what_is_of_no_structure_is_left() {
     let high_pass = r#"{"kind": "channel_highpass", "place": "response 4", "corner": 0.8}"#;
     let sensor = r#"{"kind": "sensor_mass", "place": "response 4", "mass": 0.004}"#;
     for physics in [high_pass, sensor] {
-        let (structural, degrees) = left(&blocks(physics), 5);
+        let (structural, degrees) = left(&blocks(physics), false, 5);
         assert!(structural.chi2 > degrees + 100.0, "{physics}: {} of {degrees}", structural.chi2);
     }
+}
+
+#[test]
+fn what_dashpots_of_a_suspension_add_is_of_a_structure_that_has_them() {
+    let fixture = suspended_by("8.0");
+    let excess = |held: bool| {
+        let (structural, degrees) = left(&fixture, held, 7);
+        (structural.chi2 - degrees) / (2.0 * degrees).sqrt()
+    };
+    assert!(excess(true).abs() < 4.0, "{}", excess(true));
+    assert!(excess(false) > 10.0, "{}", excess(false));
 }
