@@ -15,7 +15,7 @@ use crate::{Diagnosis, DiagnosisOptions, Hypothesis, Observation, Watch};
 use jointscope_findings::Verdict;
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_lumped::{Instrument, synthesize};
-use jointscope_spectra::{FrfPair, SpectralLines};
+use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 
 /// The recording of the points `responses` by hits on 1 and 2, with noise of a quarter of a per cent and errors of the shapes of half of one, which no two FRFs share.
 fn recorded(truth: &Fixture, responses: &[&str]) -> Observation {
@@ -275,6 +275,16 @@ fn glue_at_two_joints_is_found_where_softer_joints_explain_less() {
     assert_eq!(places, [&Place::Point("10".into()), &Place::Point("12".into())], "{found:?}");
 }
 
+/// What is recorded of the points 3 and 4 by hits on 1 and 2 to 1 kHz, its variance this share of its square.
+fn from_2_hz(truth: &Fixture, variance: f64) -> FrfSet {
+    let pairs: Vec<FrfPair> =
+        ["1", "2"].iter().flat_map(|i| ["3", "4"].map(|o| FrfPair::transverse(o, i))).collect();
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let frfs = synthesize(truth, &pairs, &lines, Instrument::AsRecorded).unwrap();
+    let variance = frfs.all_values().iter().map(|value| variance * value.norm_sqr()).collect();
+    frfs.with_variance(variance).unwrap()
+}
+
 #[test]
 fn two_effects_are_found_together_that_one_name_imitates() {
     // A joint that relaxes faster than it swings is stiffer, and damped the more the lower the mode: like a stiffer joint in records behind a window.
@@ -297,12 +307,7 @@ fn two_effects_are_found_together_that_one_name_imitates() {
     let stiffer = Effect::new(EffectKind::StiffnessChange, Place::Joint("J".into()), None, &[1.48]);
     let window = Effect::new(EffectKind::ExponentialWindow, Place::All, None, &[10.0]);
     let truth = fixture.clone().with_physics(vec![stiffer, window]).unwrap();
-    let pairs: Vec<FrfPair> =
-        ["1", "2"].iter().flat_map(|i| ["3", "4"].map(|o| FrfPair::transverse(o, i))).collect();
-    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
-    let frfs = synthesize(&truth, &pairs, &lines, Instrument::AsRecorded).unwrap();
-    let variance = frfs.all_values().iter().map(|value| 1e-8 * value.norm_sqr()).collect();
-    let frfs = frfs.with_variance(variance).unwrap();
+    let frfs = from_2_hz(&truth, 1e-8);
     let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
     let mut found: Vec<EffectKind> = diagnosis.findings.iter().map(|finding| finding.effect.kind).collect();
     found.sort_by_key(|kind| kind.name());
@@ -332,12 +337,7 @@ fn what_shows_above_the_band_only_is_named_where_the_model_is_stated_exact() {
     let place = Place::Point("2".into());
     let foot = Effect::new(EffectKind::InterfaceCompliance, place, Some(Dof::Translation), &[1.65e8]);
     let truth = Fixture::from_json(&fixture).unwrap().with_physics(vec![foot]).unwrap();
-    let pairs: Vec<FrfPair> =
-        ["1", "2"].iter().flat_map(|i| ["3", "4"].map(|o| FrfPair::transverse(o, i))).collect();
-    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
-    let frfs = synthesize(&truth, &pairs, &lines, Instrument::AsRecorded).unwrap();
-    let variance = frfs.all_values().iter().map(|value| 6e-6 * value.norm_sqr()).collect();
-    let frfs = frfs.with_variance(variance).unwrap();
+    let frfs = from_2_hz(&truth, 6e-6);
     for (fixture, found) in [(fixture.clone(), 0), (fixture.replacen('{', exact, 1), 1)] {
         let fixture = Fixture::from_json(&fixture).unwrap();
         let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
