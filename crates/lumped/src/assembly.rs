@@ -247,7 +247,9 @@ impl Assembly {
     /// The row vector t that reads the motion at `station` from the coordinates (and spreads a load over them).
     pub fn station_row(&self, station: &Station) -> Vec<f64> {
         let mut row = vec![0.0; self.order];
-        self.places[station.body].read(station.x, station.dof, &mut row);
+        let mut read = Vec::with_capacity(2);
+        self.places[station.body].add_entries(station.x, station.dof, &mut read);
+        read.into_iter().for_each(|(place, t)| row[place] = t);
         row
     }
 

@@ -312,7 +312,7 @@ struct Channel {
     delay: Option<Quantity>,
 }
 
-/// Relative standard deviations, each between 0 and 1; what is not stated is estimated from the recording.
+/// Relative standard deviations, each between 0 and 1, or 0 of all three where the model is exact; what is not stated is estimated from the recording.
 #[derive(JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct ModelError {

@@ -46,22 +46,6 @@ impl Coordinates {
             }
         }
     }
-
-    /// Writes what a component of the motion at `x` reads of the assembly's coordinates into `row`, which covers them all.
-    pub(super) fn read(&self, x: f64, dof: Dof, row: &mut [f64]) {
-        match (self, dof) {
-            (Coordinates::Rigid { first, x_cg }, Dof::Translation) => {
-                row[*first] = 1.0;
-                row[first + 1] = x - x_cg;
-            }
-            (Coordinates::Rigid { first, .. }, Dof::Rotation) => row[first + 1] = 1.0,
-            (Coordinates::Translating { first }, Dof::Translation) => row[*first] = 1.0,
-            (Coordinates::Translating { .. }, Dof::Rotation) => {}
-            (Coordinates::Beam { first, mesh }, dof) => {
-                mesh.interpolate(x, dof, &mut row[*first..first + mesh.coordinates()]);
-            }
-        }
-    }
 }
 
 /// The coordinates of all bodies in their order, beams meshed finely enough for `highest_hz`.
