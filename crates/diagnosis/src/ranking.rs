@@ -80,6 +80,12 @@ impl Ranking<'_> {
         self.best_of_each(fits)
     }
 
+    /// Every candidate fitted from where `base` stands alone, by the sizes and starts that serve best to first order; fits that will not come near
+    /// `limit` are left unfinished or out.
+    pub(crate) fn of_each(&self, base: &Hypothesis, limit: f64) -> Vec<(usize, Fit)> {
+        self.best_of_each(self.local(base, &self.starts(base), usize::MAX, 1, limit))
+    }
+
     /// What serves better than `limit` in the stead of an effect that `base` has lost: from where it left the quantities, and with `global`
     /// from the nominal ones too.
     pub(crate) fn in_stead(&self, base: &Hypothesis, global: bool, limit: f64) -> Vec<(usize, Fit)> {

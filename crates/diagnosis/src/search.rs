@@ -241,10 +241,23 @@ impl Search {
         self.ranking(fitter).of(&base.hypothesis, self.lacks_much(fitter, base), limit)
     }
 
-    /// As [`Search::ranked`], for a `base` whose quantities stand already where the effect that is looked for would leave
-    /// them; fits that will not come near `limit` are left unfinished.
+    /// As [`Search::ranked`], for a `base` whose quantities stand already where the effect that is looked for would leave them: there the
+    /// fixture alone does badly, and whatever serves as well takes few steps. Fits that will not come near `limit` are left unfinished.
     pub(crate) fn look_alikes(&self, fitter: &Fitter, base: &Hypothesis, limit: f64) -> Vec<(usize, Fit)> {
         Ranking { excluded: &self.told_apart, ..self.ranking(fitter) }.look_alikes(base, limit)
+    }
+
+    /// The same for an effect that quantities make up for, but for little, where `base` stands: whatever explains that little is small too, and near.
+    pub(crate) fn small_look_alikes(
+        &self,
+        fitter: &Fitter,
+        base: &Hypothesis,
+        limit: f64,
+    ) -> Vec<(usize, Fit)> {
+        let mut settings = fitter.settings.clone();
+        settings.fit.limit.reach = settings.ranking.small_reach;
+        let fitter = Fitter { settings: &settings, ..*fitter };
+        Ranking { excluded: &self.told_apart, ..self.ranking(&fitter) }.of_each(base, limit)
     }
 
     fn ranking<'a>(&'a self, fitter: &Fitter<'a>) -> Ranking<'a> {

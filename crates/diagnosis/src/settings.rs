@@ -122,6 +122,11 @@ pub struct RankingSettings {
     pub unlimited: usize,
     /// A fit whose objective will stay this far above the best is not finished: e⁻³⁰ as probable.
     pub margin: f64,
+    /// Decrease of χ² by an effect below which quantities make up for nearly all of it, so that its look-alikes are near where they do…
+    pub small: f64,
+    /// … and the distance from the limit within which their fits go on whatever derivatives promise: from there they hardly creep. What came below
+    /// the limit in chains of 8 and 12 bodies without it did so with it.
+    pub small_reach: f64,
 }
 
 /// When an effect is believed, and when a search ends.
@@ -363,6 +368,8 @@ impl Default for Settings {
                 scored: 0.1,
                 unlimited: 4,
                 margin: 60.0,
+                small: 60.0,
+                small_reach: 4.0,
             },
             selection: SelectionSettings {
                 penalty: 8.0,
