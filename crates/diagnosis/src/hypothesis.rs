@@ -304,26 +304,22 @@ impl Hypothesis {
         fixture.with_physics(physics)
     }
 
-    /// Its effects without their dashpots, which leaves springs and masses; `None` where no effect is one, or one dissipates by itself.
-    pub(crate) fn springs_and_masses(&self) -> Option<Vec<Effect>> {
-        use EffectKind::{AddedMass, JointLength, JointMass, ShearDeformation, StiffnessChange};
+    /// Its effects without their dashpots, which leaves springs, masses and what no mode depends on; `None` where one dissipates by itself.
+    pub(crate) fn without_dashpots(&self) -> Option<Vec<Effect>> {
         let mut effects = self.effects();
-        let mut any = false;
         for effect in &mut effects {
-            let spec = effect.kind.spec();
-            match (spec.size.dashpot, effect.kind, spec.entry) {
-                (Some(dashpot), ..) => {
-                    effect.parameters[dashpot].value = 0.0;
-                    any = true;
-                }
-                (_, AddedMass | JointLength | JointMass | ShearDeformation | StiffnessChange, _) => {
-                    any = true
-                }
-                (_, _, Entry::Signal | Entry::Restated | Entry::Offset) => {}
-                _ => return None,
+            match effect.kind.spec().size.dashpot {
+                Some(dashpot) => effect.parameters[dashpot].value = 0.0,
+                None if is_spring_or_mass(effect.kind) || !changes_modes(effect.kind) => {}
+                None => return None,
             }
         }
-        any.then_some(effects)
+        Some(effects)
+    }
+
+    /// Whether its effects, springs and masses all, make other modes than the fixture's own.
+    pub(crate) fn has_other_modes(&self) -> bool {
+        self.without_dashpots().is_some_and(|effects| effects.iter().any(|effect| changes_modes(effect.kind)))
     }
 
     /// Root mean square of the relative deviations to which the fixture states the damping of its modes; zero where they do not move.
@@ -357,6 +353,17 @@ impl Hypothesis {
         }
         next
     }
+}
+
+/// Whether an effect has stiffness or mass and dissipates nothing.
+fn is_spring_or_mass(kind: EffectKind) -> bool {
+    use EffectKind::{AddedMass, JointLength, JointMass, ShearDeformation, StiffnessChange};
+    matches!(kind, AddedMass | JointLength | JointMass | ShearDeformation | StiffnessChange)
+}
+
+/// Whether an effect is one of the structure, and not of the measuring chain or of what the fixture says where.
+fn changes_modes(kind: EffectKind) -> bool {
+    !matches!(kind.spec().entry, Entry::Signal | Entry::Restated | Entry::Offset)
 }
 
 #[cfg(test)]

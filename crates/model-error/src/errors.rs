@@ -279,6 +279,12 @@ impl Comparison {
         self
     }
 
+    /// The same where the structure's damping is distributed as the model has it.
+    pub fn with_damping_as_modelled(mut self) -> Self {
+        self.distributed.clear();
+        self
+    }
+
     /// The same with errors of the damping that change the modes' damping ratios alone, and no phases: for a fit that sets out from where damping may be far more or
     /// less than where it ends.
     pub fn with_ratios_alone(mut self) -> Self {

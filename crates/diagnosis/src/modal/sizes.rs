@@ -103,10 +103,15 @@ impl Problem<'_> {
         self.largest_size(fit) <= adequate.0 && fit.largest_pull() <= adequate.1 && fit.leaves_chance()
     }
 
-    /// Whether every mode has a partner and errors of the model gain less than this in ln p.
+    /// Whether every mode has a partner and errors of the model gain less than this in ln p: among them another distribution of its damping, where no effect makes its own of that.
     pub(crate) fn is_exact(&self, fit: &ModalFit, gain: f64) -> bool {
         let least = self.sizes.times(ErrorSizes::LEAST);
-        let without = || fit.linear.ln_density(&fit.standing.comparison, &least);
+        let comparison = fit.standing.comparison.clone();
+        let comparison = match fit.hypothesis.has_other_modes() {
+            true => comparison,
+            false => comparison.with_damping_as_modelled(),
+        };
+        let without = || fit.linear.ln_density(&comparison, &least);
         let gained = || without().map_or(f64::INFINITY, |ln| self.seen(fit).ln - ln);
         fit.standing.pairing.alone() == 0.0 && gained() < gain
     }
@@ -121,11 +126,7 @@ impl Problem<'_> {
     pub(crate) fn relative_sizes_as_stated(&self, fit: &ModalFit) -> Vec<f64> {
         let mut sizes = self.relative_sizes(fit);
         let stated = fit.hypothesis.deviation_of_damping();
-        let usual = if fit.hypothesis.springs_and_masses().is_some() {
-            stated
-        } else {
-            LEAST_OF_STATED_DAMPING * stated
-        };
+        let usual = if fit.hypothesis.has_other_modes() { stated } else { LEAST_OF_STATED_DAMPING * stated };
         if usual > self.sizes.damping {
             sizes[DAMPING] *= self.sizes.damping / usual;
         }

@@ -62,8 +62,9 @@ impl Problem<'_> {
         let shapes = |fixture: &Fixture| Shapes::of(fixture, self.recorded, &modelled.poles());
         let own = shapes(fixture)?;
         let mut comparison = Comparison::new(self.recorded, &pairing, &modelled, &own);
-        // The damping of the fixture by itself is no proportional one of a structure with effects; which of both it is, if either, nobody knows.
-        let springs = match hypothesis.springs_and_masses() {
+        // Dashpots turn phases as the fixture has them, or, if its damping is that of the modes as they stand, not at all; and its damping is no proportional one of a structure with
+        // effects. Which of both it is, if either, nobody knows.
+        let springs = match hypothesis.without_dashpots() {
             Some(effects) if effects == hypothesis.effects() => Some(own),
             Some(effects) => hypothesis.to_fixture_with(effects).ok().and_then(|fixture| shapes(&fixture)),
             None => None,

@@ -1,4 +1,5 @@
 mod every_joint;
+mod phases;
 mod search;
 
 use crate::catalogue::catalogue;
