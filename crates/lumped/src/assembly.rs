@@ -6,7 +6,7 @@ mod coordinates;
 mod matrices;
 mod turned;
 
-pub(crate) use beside::by_coordinate;
+pub(crate) use beside::Rows;
 pub(crate) use change::{AssemblyChange, has_meshed_bodies};
 
 use crate::condensed::Stretch;
@@ -41,6 +41,27 @@ pub struct Assembly {
     damping: Vec<ModeDamping>,
     elastic: Vec<usize>,
     law: DampingLaw,
+    /// What it is rebuilt from, where effects rebuild a beam.
+    plain: Option<Arc<Plain>>,
+}
+
+/// An assembly without the effects that rebuild a beam, whose viscous matrix is that of the assembly with them.
+#[derive(Debug, Clone)]
+struct Plain {
+    assembly: Assembly,
+    /// (Mξ_r)ᵀ φ_k of its own mode r, row by row, and the rebuilt one k: by its square the one's viscosity is the other's.
+    shares: Vec<f64>,
+}
+
+impl Plain {
+    /// φᵀ C φ of every rebuilt mode: C = Σ v_r (Mξ_r)(Mξ_r)ᵀ over the modes of an assembly as this one, so `damped`.
+    fn viscous_diagonal(&self, damped: &[ModeDamping]) -> Vec<f64> {
+        let mut all = vec![0.0; damped.len()];
+        for (row, mode) in self.shares.chunks_exact(damped.len()).zip(damped) {
+            all.iter_mut().zip(row).for_each(|(all, share)| *all += mode.viscous * share * share);
+        }
+        all
+    }
 }
 
 impl Assembly {
@@ -83,14 +104,10 @@ impl Assembly {
             damping: Vec::new(),
             elastic: Vec::new(),
             law,
+            plain: None,
         };
-        let held = assembly.held_modes(fixture);
-        (assembly.damping, assembly.elastic) = (assembly.law.of_held_modes(&held), elastic_modes(&held));
-        if actions(fixture).any(|action| matches!(action, Action::OnBeam { .. })) {
-            assembly.rebuilt(fixture, &stretches)
-        } else {
-            Ok(assembly)
-        }
+        assembly.damp_by_modes(fixture);
+        if rebuilds(fixture) { assembly.rebuilt(fixture, &stretches) } else { Ok(assembly) }
     }
 
     /// One uniform beam by itself, whose modes are those of a problem without dimensions.
@@ -147,6 +164,7 @@ impl Assembly {
             damping,
             elastic,
             law,
+            plain: None,
         })
     }
 
@@ -156,16 +174,31 @@ impl Assembly {
     fn rebuilt(self, fixture: &Fixture, stretches: &[Stretch]) -> Result<Self, LumpedError> {
         let with = Matrices::of(fixture, &self.places, self.order, true);
         let basis = modes(self.order, &with.mass, &with.stiffness, stretches)?;
-        let structural = match self.law {
-            DampingLaw::LossFactor(factor) => factor,
-            _ => 0.0,
-        };
-        let viscous = self.viscous_diagonal(&basis);
-        let damping = viscous.iter().zip(basis.eigenvalues());
-        let damping = damping
-            .map(|(&viscous, eigenvalue)| ModeDamping { viscous, structural: structural * eigenvalue })
-            .collect();
-        Ok(Assembly { mass: with.mass, stiffness: with.stiffness, basis, damping, ..self })
+        let shares = self.shares(&basis);
+        let (places, elastic) = (self.places.clone(), self.elastic.clone());
+        let (order, law) = (self.order, self.law.clone());
+        let plain = Plain { assembly: self, shares };
+        let damping =
+            rebuilt_damping(&law, plain.viscous_diagonal(&plain.assembly.damping), basis.eigenvalues());
+        let plain = Some(Arc::new(plain));
+        Ok(Assembly {
+            order,
+            places,
+            mass: with.mass,
+            stiffness: with.stiffness,
+            basis,
+            turned: None,
+            damping,
+            elastic,
+            law,
+            plain,
+        })
+    }
+
+    /// Damps the modes by the fixture's law.
+    fn damp_by_modes(&mut self, fixture: &Fixture) {
+        let held = self.held_modes(fixture);
+        (self.damping, self.elastic) = (self.law.of_held_modes(&held), elastic_modes(&held));
     }
 
     /// The modes with what supports are to them; nothing where no mode holds supports.
@@ -182,16 +215,10 @@ impl Assembly {
         modes
     }
 
-    /// φᵀ C φ of every shape of `basis`: C = Σ v_r (Mξ_r)(Mξ_r)ᵀ over this assembly's own modes.
-    fn viscous_diagonal(&self, basis: &ModalBasis) -> Vec<f64> {
-        let n = self.order;
-        let momenta = products(n, self.basis.shapes(), &self.mass);
-        let shares = products(n, &momenta, basis.shapes());
-        let mut all = vec![0.0; n];
-        for (row, mode) in shares.chunks_exact(n).zip(&self.damping) {
-            all.iter_mut().zip(row).for_each(|(all, share)| *all += mode.viscous * share * share);
-        }
-        all
+    /// (Mξ_r)ᵀ φ_k of this assembly's own modes r and of every shape k of `basis`.
+    fn shares(&self, basis: &ModalBasis) -> Vec<f64> {
+        let momenta = products(self.order, self.basis.shapes(), &self.mass);
+        products(self.order, &momenta, basis.shapes())
     }
 
     /// Number of coordinates.
@@ -278,6 +305,23 @@ impl Assembly {
         }
         all.iter_mut().enumerate().for_each(|(r, value)| *value += weight * of_mode(r));
     }
+}
+
+/// Whether effects rebuild a beam.
+fn rebuilds(fixture: &Fixture) -> bool {
+    actions(fixture).any(|action| matches!(action, Action::OnBeam { .. }))
+}
+
+/// What damps the modes of a beam that effects rebuild.
+fn rebuilt_damping(law: &DampingLaw, viscous: Vec<f64>, eigenvalues: &[f64]) -> Vec<ModeDamping> {
+    let structural = match law {
+        DampingLaw::LossFactor(factor) => *factor,
+        _ => 0.0,
+    };
+    let damping = viscous.into_iter().zip(eigenvalues);
+    damping
+        .map(|(viscous, eigenvalue)| ModeDamping { viscous, structural: structural * eigenvalue })
+        .collect()
 }
 
 /// Whether the modes are those of one body without known masses.

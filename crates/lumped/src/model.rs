@@ -1,5 +1,6 @@
 mod change;
 
+use crate::assembly::Rows;
 use crate::bar::BarShape;
 use crate::denominator::Denominator;
 use crate::effects::{Action, actions};
@@ -7,7 +8,6 @@ use crate::term_station::TermStation;
 use crate::terms::Terms;
 use crate::{Assembly, LumpedError};
 use jointscope_fixture::{BodyKind, Fixture};
-use jointscope_linalg::ModalBasis;
 use jointscope_spectra::Dof;
 use num_complex::Complex64;
 
@@ -52,7 +52,7 @@ impl Model {
     ///
     /// # Errors
     /// Those of [`Model::new`].
-    pub(crate) fn beside(&self, here: (&Fixture, &[f64]), moved: &Fixture) -> Result<Self, LumpedError> {
+    pub(crate) fn beside(&self, here: (&Fixture, &Rows), moved: &Fixture) -> Result<Self, LumpedError> {
         refuse_nonlinear(moved)?;
         let assembly = match self.assembly.beside(here, moved, self.highest_hz) {
             Some(assembly) => assembly,
@@ -77,9 +77,9 @@ impl Model {
         Model { assembly, bending, terms: Terms::of(fixture, &flexible), highest_hz }
     }
 
-    /// The undamped modes of the assembly.
-    pub(crate) fn modes_of_assembly(&self) -> &ModalBasis {
-        self.assembly.modes()
+    /// The amplitudes of its modes at each coordinate.
+    pub(crate) fn rows(&self) -> Rows {
+        self.assembly.rows()
     }
 
     /// What is not a proportional part of the free assembly.

@@ -1,6 +1,6 @@
 //! Fixtures next to one another, for derivatives by differences.
 
-use crate::assembly::by_coordinate;
+use crate::assembly::Rows;
 use crate::{Instrument, LumpedError, Model, ModelledTest};
 use jointscope_fixture::Fixture;
 use jointscope_spectra::FrfPair;
@@ -13,19 +13,18 @@ use jointscope_spectra::FrfPair;
 pub struct Vicinity {
     fixture: Fixture,
     model: Model,
-    /// The amplitudes of all modes at each coordinate.
-    rows: Vec<f64>,
+    rows: Rows,
 }
 
 impl Vicinity {
-    /// About a fixture, beams meshed for lines up to `highest_hz`; `None` where it cannot be modelled, and where nothing is gained: of rigid bodies, of a uniform beam by itself, whose modes
-    /// cost little, and of beams that effects rebuild.
+    /// About a fixture, beams meshed for lines up to `highest_hz`; `None` where it cannot be modelled, and where nothing is gained: of rigid bodies, and of a uniform beam by itself, whose modes
+    /// cost little.
     pub fn where_it_pays(fixture: Fixture, highest_hz: f64) -> Option<Self> {
         if !Model::has_neighbours(&fixture) {
             return None;
         }
         let model = Model::new(&fixture, highest_hz).ok()?;
-        let rows = by_coordinate(model.modes_of_assembly());
+        let rows = model.rows();
         Some(Vicinity { fixture, model, rows })
     }
 

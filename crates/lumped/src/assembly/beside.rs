@@ -13,10 +13,8 @@
 use super::coordinates::{Coordinates, coordinates};
 use super::matrices::Matrices;
 use super::turned::Turned;
-use super::{Assembly, has_meshed_bodies, is_one_free_body};
-use crate::effects::{Action, actions};
+use super::{Assembly, has_meshed_bodies, is_one_free_body, rebuilds, rebuilt_damping};
 use crate::held::in_the_modes;
-use jointscope_damping::elastic_modes;
 use jointscope_fixture::Fixture;
 use jointscope_linalg::ModalBasis;
 use std::f64::consts::TAU;
@@ -35,25 +33,49 @@ impl Assembly {
         self.turned.is_some()
     }
 
-    /// Whether assemblies of fixtures next to this one may take their modes from its own: there is an eigenproblem to be saved, and no effect that rebuilds a beam.
+    /// Whether assemblies of fixtures next to this one may take their modes from its own: there is an eigenproblem to be saved.
     pub(crate) fn has_neighbours(fixture: &Fixture) -> bool {
-        let rebuilds = |action| matches!(action, Action::OnBeam { .. });
-        has_meshed_bodies(fixture) && !is_one_free_body(fixture) && !actions(fixture).any(rebuilds)
+        has_meshed_bodies(fixture) && !is_one_free_body(fixture)
     }
 
-    /// The assembly of `moved`, which differs next to nothing from `fixture`, whose assembly this is: modes to first order from those at hand, which `rows` holds coordinate after
-    /// coordinate. `None` where there is more to solve than that: fixtures that differ by more or in kind, beams that effects rebuild or whose modes cost little anyway,
-    /// modes too close to each other.
+    /// The amplitudes of all modes coordinate after coordinate: its own, and those of what it is rebuilt from.
+    pub(crate) fn rows(&self) -> Rows {
+        let plain = self.plain.as_ref().map(|plain| by_coordinate(&plain.assembly.basis));
+        Rows { own: by_coordinate(&self.basis), plain }
+    }
+
+    /// The assembly of `moved`, which differs next to nothing from `fixture`, whose assembly this is: modes to first order from those at hand, of which these are the
+    /// `rows`. `None` where there is more to solve than that: fixtures that differ by more or in kind, beams whose modes cost little anyway, modes too close to each other.
+    ///
+    /// Of a beam that effects rebuild these are less sharp: condensed modes leave a little inertia out, more of it where sections resist being turned (derivatives by the rotary inertia are off by a
+    /// hundredth), and how the viscosity of the modes before is shared among the rebuilt ones stays as it is.
     pub(crate) fn beside(
         &self,
-        (fixture, rows): (&Fixture, &[f64]),
+        (fixture, rows): (&Fixture, &Rows),
         moved: &Fixture,
         highest_hz: f64,
     ) -> Option<Self> {
-        if self.turned.is_some()
-            || !Assembly::has_neighbours(moved)
-            || in_the_modes(fixture) != in_the_modes(moved)
-        {
+        if !Assembly::has_neighbours(moved) || rebuilds(moved) != self.plain.is_some() {
+            return None;
+        }
+        let mut assembly = self.turned((fixture, &rows.own), moved, highest_hz)?;
+        match self.plain.as_deref().zip(rows.plain.as_deref()) {
+            None => assembly.damp_by_modes(moved),
+            Some((plain, rows)) => {
+                let mut before = plain.assembly.turned((fixture, rows), moved, highest_hz)?;
+                before.damp_by_modes(moved);
+                let viscous = plain.viscous_diagonal(&before.damping);
+                assembly.damping = rebuilt_damping(&assembly.law, viscous, assembly.eigenvalues());
+                assembly.elastic = before.elastic;
+            }
+        }
+        // Ratios that pass to other modes are no small change.
+        (assembly.elastic == self.elastic).then_some(assembly)
+    }
+
+    /// Matrices of a fixture `moved`, with the effects that rebuild beams if this assembly has them, and modes to first order; not damped yet.
+    fn turned(&self, (fixture, rows): (&Fixture, &[f64]), moved: &Fixture, highest_hz: f64) -> Option<Self> {
+        if self.turned.is_some() || in_the_modes(fixture) != in_the_modes(moved) {
             return None;
         }
         let values = self.basis.eigenvalues();
@@ -66,28 +88,24 @@ impl Assembly {
         {
             return None;
         }
-        let there = Matrices::of(moved, &places, self.order, false);
+        let there = Matrices::of(moved, &places, self.order, self.plain.is_some());
         let far = (FAR * TAU * highest_hz).powi(2);
         let scales: Vec<f64> = places.iter().zip(&self.places).flat_map(|(a, b)| a.scales(b)).collect();
         let mass = projected(rows, &scales, &self.mass, &there.mass);
         let stiffness = projected(rows, &scales, &self.stiffness, &there.stiffness);
         let (eigenvalues, mixing) = turned(values, mass.as_deref(), stiffness.as_deref(), far)?;
-        let turned = Turned { eigenvalues, scales, mixing };
-        let mut assembly = Assembly {
+        Some(Assembly {
             order: self.order,
             places,
             mass: there.mass,
             stiffness: there.stiffness,
             basis: Arc::clone(&self.basis),
-            turned: Some(turned),
+            turned: Some(Turned { eigenvalues, scales, mixing }),
             damping: Vec::new(),
             elastic: Vec::new(),
             law: super::damping_law(moved.damping()),
-        };
-        let held = assembly.held_modes(moved);
-        (assembly.damping, assembly.elastic) = (assembly.law.of_held_modes(&held), elastic_modes(&held));
-        // Ratios that pass to other modes are no small change.
-        (assembly.elastic == self.elastic).then_some(assembly)
+            plain: None,
+        })
     }
 }
 
@@ -119,8 +137,15 @@ impl Coordinates {
     }
 }
 
+/// The amplitudes of all modes at each coordinate: of an assembly, and of what it is rebuilt from, if it is.
+#[derive(Debug, Clone)]
+pub(crate) struct Rows {
+    own: Vec<f64>,
+    plain: Option<Vec<f64>>,
+}
+
 /// A basis coordinate after coordinate: the amplitudes of all modes there.
-pub(crate) fn by_coordinate(basis: &ModalBasis) -> Vec<f64> {
+fn by_coordinate(basis: &ModalBasis) -> Vec<f64> {
     let (n, shapes) = (basis.order(), basis.shapes());
     (0..n * n).map(|k| shapes[k % n * n + k / n]).collect()
 }
