@@ -136,20 +136,14 @@ impl Assembly {
             (before, own)
         } else {
             let modes = beam.modes()?;
-            let structural = match law {
-                DampingLaw::LossFactor(factor) => factor,
-                _ => 0.0,
-            };
             let viscous = |r: usize| match modes.shares(r) {
                 Some(shares) => {
                     shares.iter().zip(&own).map(|(share, mode)| share * share * mode.viscous).sum()
                 }
                 None => own[r].viscous,
             };
-            let eigenvalues = modes.basis.eigenvalues().iter().enumerate();
-            let damping = eigenvalues
-                .map(|(r, l)| ModeDamping { viscous: viscous(r), structural: structural * l })
-                .collect();
+            let eigenvalues = modes.basis.eigenvalues();
+            let damping = rebuilt_damping(&law, (0..eigenvalues.len()).map(viscous), eigenvalues);
             (modes.basis, damping)
         };
         let with = Matrices::of(fixture, &places, order, true);
@@ -313,7 +307,11 @@ fn rebuilds(fixture: &Fixture) -> bool {
 }
 
 /// What damps the modes of a beam that effects rebuild.
-fn rebuilt_damping(law: &DampingLaw, viscous: Vec<f64>, eigenvalues: &[f64]) -> Vec<ModeDamping> {
+fn rebuilt_damping(
+    law: &DampingLaw,
+    viscous: impl IntoIterator<Item = f64>,
+    eigenvalues: &[f64],
+) -> Vec<ModeDamping> {
     let structural = match law {
         DampingLaw::LossFactor(factor) => *factor,
         _ => 0.0,

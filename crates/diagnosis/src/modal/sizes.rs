@@ -106,12 +106,11 @@ impl Problem<'_> {
     /// Whether every mode has a partner and errors of the model gain less than this in ln p: among them another distribution of its damping, where no effect makes its own of that.
     pub(crate) fn is_exact(&self, fit: &ModalFit, gain: f64) -> bool {
         let least = self.sizes.times(ErrorSizes::LEAST);
-        let comparison = fit.standing.comparison.clone();
-        let comparison = match fit.hypothesis.has_other_modes() {
-            true => comparison,
-            false => comparison.with_damping_as_modelled(),
+        let comparison = &fit.standing.comparison;
+        let without = || match fit.hypothesis.has_other_modes() {
+            true => fit.linear.ln_density(comparison, &least),
+            false => fit.linear.ln_density(&comparison.clone().with_damping_as_modelled(), &least),
         };
-        let without = || fit.linear.ln_density(&comparison, &least);
         let gained = || without().map_or(f64::INFINITY, |ln| self.seen(fit).ln - ln);
         fit.standing.pairing.alone() == 0.0 && gained() < gain
     }
