@@ -32,8 +32,8 @@ pub(crate) fn alternatives(fitter: &Fitter, search: &Search, index: usize) -> Ve
     let penalties = parameter_penalty(selection, &base) + selection.parameter_penalty;
     let limit = inflation * (cost(fitter, repaired, inflation) + listed - penalties);
     let mut fits = match fitter.observation.work().allows("look-alikes of effects found") {
-        true => match imitated(fitter, search, &base) {
-            Some(imitated) => search.small_look_alikes(fitter, &imitated.hypothesis, limit),
+        true => match imitated(fitter, search, &base, inflation) {
+            Some(imitated) => search.small_look_alikes(fitter, &imitated, limit),
             None => search.look_alikes(fitter, &base, limit),
         },
         false => Vec::new(),
@@ -55,25 +55,23 @@ pub(crate) fn alternatives(fitter: &Fitter, search: &Search, index: usize) -> Ve
     all
 }
 
-/// The fit without an effect, where the quantities make up for nearly all of it.
-fn imitated(fitter: &Fitter, search: &Search, without: &Hypothesis) -> Option<Fit> {
-    let repaired = &search.repaired;
-    let small = repaired.objective + fitter.settings.ranking.small * repaired.inflation(fitter.observation);
-    let fit = match without.effect_count() {
-        0 => Some(search.refitted.clone()),
-        _ => fitter.local(without, None, small),
-    };
-    fit.filter(|fit| fit.objective < small)
+/// Where the quantities stand that make up for nearly all of an effect, if they do, with the noise of this variance `inflation`.
+fn imitated(fitter: &Fitter, search: &Search, without: &Hypothesis, inflation: f64) -> Option<Hypothesis> {
+    let small = search.repaired.objective + fitter.settings.ranking.small * inflation;
+    match without.effect_count() {
+        0 => (search.refitted.objective < small).then(|| search.refitted.hypothesis.clone()),
+        _ => fitter.local(without, None, small).filter(|fit| fit.objective < small).map(|fit| fit.hypothesis),
+    }
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::Watch;
     use crate::settings::Settings;
-    use crate::{Observation, Watch};
+    use crate::simulated::simulated;
     use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
-    use jointscope_lumped::{Instrument, synthesize};
     use jointscope_spectra::{FrfPair, SpectralLines};
 
     const BLOCKS: &str = r#"{
@@ -92,16 +90,14 @@ mod tests {
         let truth = fixture.clone().with_physics(vec![bracket]).unwrap();
         let pairs = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")].map(|(o, i)| FrfPair::transverse(o, i));
         let lines = SpectralLines::even(10.0, 5.0, 200).unwrap();
-        let frfs = synthesize(&truth, &pairs, &lines, Instrument::AsRecorded).unwrap();
-        let variance = frfs.all_values().iter().map(|value| 1.1e-2 * value.norm_sqr()).collect();
-        let observation = Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap();
+        let observation = simulated(&truth, &pairs, &lines, 1.1e-2);
         let settings = Settings::default();
         let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
         let search = Search::of(&fixture, &observation, true).unwrap();
         let repaired = &search.repaired;
         assert_eq!(repaired.hypothesis.effect_count(), 1, "{:?}", repaired.hypothesis.effects());
         let base = repaired.hypothesis.without(0);
-        let without = imitated(&fitter, &search, &base).unwrap();
+        let without = imitated(&fitter, &search, &base, repaired.inflation(&observation)).unwrap();
         let limit = repaired.objective + settings.evidence.listed;
         let below = |fits: Vec<(usize, Fit)>| {
             let mut below: Vec<(usize, f64)> = fits
@@ -112,7 +108,7 @@ mod tests {
             below.sort_by_key(|(candidate, _)| *candidate);
             below
         };
-        let near = below(search.small_look_alikes(&fitter, &without.hypothesis, limit));
+        let near = below(search.small_look_alikes(&fitter, &without, limit));
         let afar = below(search.look_alikes(&fitter, &base, limit));
         assert!(near.len() > 4, "{near:?}");
         let pairs = near.iter().zip(&afar);

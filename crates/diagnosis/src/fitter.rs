@@ -307,8 +307,8 @@ fn better(a: Fit, b: Fit) -> Fit {
 mod tests {
     use super::*;
     use crate::Watch;
+    use crate::simulated::simulated;
     use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
-    use jointscope_lumped::{Instrument, synthesize};
     use jointscope_spectra::{FrfPair, SpectralLines};
     use proptest::prelude::*;
 
@@ -356,9 +356,7 @@ mod tests {
             let truth = blocks([1.0; 4]).with_physics(hidden.to_vec()).unwrap();
             let pairs = [("4", "1"), ("3", "1"), ("4", "2")].map(|(o, i)| FrfPair::transverse(o, i));
             let lines = SpectralLines::even(10.0, 5.0, 200).unwrap();
-            let frfs = synthesize(&truth, &pairs, &lines, Instrument::AsRecorded).unwrap();
-            let variance = frfs.all_values().iter().map(|value| 1e-5 * value.norm_sqr()).collect();
-            let observation = Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap();
+            let observation = simulated(&truth, &pairs, &lines, 1e-5);
             let settings = Settings::default();
             let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
             let objective = |known: [f64; 4]| {

@@ -71,6 +71,8 @@ mod scan;
 mod search;
 mod searched_frfs;
 mod settings;
+#[cfg(test)]
+mod simulated;
 mod together;
 mod watch;
 mod work;

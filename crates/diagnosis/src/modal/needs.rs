@@ -131,10 +131,10 @@ fn least_needed(
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::Watch;
     use crate::settings::Settings;
-    use crate::{Observation, Watch};
+    use crate::simulated::simulated;
     use jointscope_fixture::{Fixture, Place};
-    use jointscope_lumped::{Instrument, synthesize};
     use jointscope_spectra::{FrfPair, SpectralLines};
 
     /// Two blocks on a strip, on supports of 2 to 4 Hz where these are `held`.
@@ -160,9 +160,7 @@ mod tests {
         let truth = blocks(held).with_physics(vec![effect.clone()]).unwrap();
         let pairs = [("3", "1"), ("4", "1")].map(|(o, i)| FrfPair::transverse(o, i));
         let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
-        let frfs = synthesize(&truth, &pairs, &lines, Instrument::AsRecorded).unwrap();
-        let variance = frfs.all_values().iter().map(|value| 1.6e-5 * value.norm_sqr()).collect();
-        let observation = Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap();
+        let observation = simulated(&truth, &pairs, &lines, 1.6e-5);
         let settings = Settings::default();
         let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
         let search = Search::without_effects(&fitter, &blocks(held), false).unwrap();

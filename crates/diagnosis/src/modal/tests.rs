@@ -15,6 +15,7 @@ use crate::modal::searcher::Named;
 use crate::modal::sizes::known;
 use crate::search::Search;
 use crate::settings::Settings;
+use crate::simulated::{observed, simulated};
 use crate::{Diagnosis, DiagnosisOptions, Hypothesis, Observation, Watch};
 use jointscope_findings::{Estimate, Verdict};
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
@@ -60,9 +61,7 @@ fn a_fit_stands_where_it_would_come_to_rest_at_the_errors_that_it_asks_for() {
         let pairs =
             ["1", "2"].iter().flat_map(|i| ["1", "2", "3", "4", "5"].map(|o| FrfPair::transverse(o, i)));
         let lines = SpectralLines::even(20.0, 2.5, 430).unwrap();
-        let frfs = synthesize(&truth, &pairs.collect::<Vec<_>>(), &lines, Instrument::AsRecorded).unwrap();
-        let variance = frfs.all_values().iter().map(|value| 6e-6 * value.norm_sqr()).collect();
-        let observation = Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap();
+        let observation = simulated(&truth, &pairs.collect::<Vec<_>>(), &lines, 6e-6);
         let nominal = Hypothesis::nominal(&bar(SHEAR), false);
         let features = Features::of(&observation, &nominal, &Settings::default().modal).unwrap();
         let problem = features.problem(observation.work());
@@ -91,8 +90,7 @@ fn with_errors_of_shapes(truth: &Fixture, pairs: &[FrfPair], lines: &SpectralLin
     let count = lines.len();
     let off = |at: usize| 1.0 + 0.005 * (7.0 * (1 + at / count) as f64).sin();
     let frfs = frfs.with_values(|at, value| value * off(at));
-    let variance = frfs.all_values().iter().map(|value| 6e-6 * value.norm_sqr()).collect();
-    Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap()
+    observed(frfs, 6e-6)
 }
 
 /// What is recorded of two points by hits on two others, with the noise of a thousandth.
@@ -100,9 +98,7 @@ fn recorded(truth: &Hypothesis) -> Observation {
     let pairs = ["1", "2"].iter().flat_map(|i| ["3", "4"].map(|o| FrfPair::transverse(o, i)));
     let lines = SpectralLines::even(20.0, 2.5, 430).unwrap();
     let of_truth = truth.to_fixture().unwrap();
-    let frfs = synthesize(&of_truth, &pairs.collect::<Vec<_>>(), &lines, Instrument::AsRecorded).unwrap();
-    let variance = frfs.all_values().iter().map(|value| 1e-6 * value.norm_sqr()).collect();
-    Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap()
+    simulated(&of_truth, &pairs.collect::<Vec<_>>(), &lines, 1e-6)
 }
 
 #[test]
@@ -242,9 +238,7 @@ fn a_shear_deformation_leaves_the_rotary_inertia_of_its_section_open() {
     let nominal = Hypothesis::nominal(&plain, false);
     let pairs = ["1", "2", "3", "4", "5"].map(|o| FrfPair::transverse(o, "1"));
     let lines = SpectralLines::even(20.0, 2.5, 430).unwrap();
-    let frfs = synthesize(&bar(SHEAR), &pairs, &lines, Instrument::AsRecorded).unwrap();
-    let variance = frfs.all_values().iter().map(|value| 6e-6 * value.norm_sqr()).collect();
-    let observation = Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap();
+    let observation = simulated(&bar(SHEAR), &pairs, &lines, 6e-6);
     let candidates = catalogue(&plain, &observation);
     let shear = candidates.iter().find(|c| c.kind == EffectKind::ShearDeformation).unwrap();
     // EI over E/ρ, which the bar's own section has to 3 %.
@@ -266,8 +260,7 @@ fn found_with_gains(gains: [f64; 4]) -> [Vec<Estimate>; 2] {
     let exact = recorded(&truth);
     let count = exact.lines().len();
     let frfs = exact.frfs().clone().with_values(|at, value| value * (1.0 + gains[at / count]));
-    let variance = frfs.all_values().iter().map(|value| 1e-6 * value.norm_sqr()).collect();
-    let observation = Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap();
+    let observation = observed(frfs, 1e-6);
     let settings = Settings::default();
     let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
     let judged = ModalJudgement::of(&fitter, &nominal, &[], None).unwrap();
