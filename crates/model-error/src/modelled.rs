@@ -1,10 +1,10 @@
 //! The modes of a model as a recording would have them: poles with their residues, and residual terms by projection on the recording's own.
 
 use crate::basis::{Pole, UPPER};
-use crate::poles::{ModelledMode, mode, poles};
+use crate::poles::{ModelledMode, mode, mode_beside, poles};
 use crate::recorded::RecordedModes;
 use jointscope_fixture::Fixture;
-use jointscope_lumped::{Instrument, ModelledTest, Vicinity};
+use jointscope_lumped::{ContinuedFrfs, Instrument, ModelledTest, Vicinity};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -47,7 +47,7 @@ pub struct ModelledModes {
 }
 
 impl RecordedModes {
-    /// What [`ModelledModes::after_step`] sets out from to fixtures about this one; `None` where [`ModelledModes::near`] costs as little.
+    /// What models of fixtures about this one are made from in [`ModelledModes::after_step`]; `None` where models of their own cost as little.
     pub fn about(&self, fixture: Fixture) -> Option<Vicinity> {
         Vicinity::where_it_pays(fixture, self.band.1)
     }
@@ -65,58 +65,68 @@ impl ModelledModes {
     /// A mode that makes no peak in any FRF between the recording's channels is found only where the recording has one nearby.
     pub fn of(fixture: &Fixture, recorded: &RecordedModes) -> Option<Self> {
         let test = recorded.modelled(fixture)?;
-        ModelledModes::followed(&test, recorded, &poles(&test, fixture, recorded), None)
+        let modes = follow(&test, recorded, &poles(&test, fixture, recorded), mode)?;
+        ModelledModes::made_of(modes, None, &test, recorded)
     }
 
     /// The modes of a fixture near those of another one, as which they count; `None` where a pole cannot be followed or the model has no finite FRFs.
     pub fn near(fixture: &Fixture, recorded: &RecordedModes, other: &ModelledModes) -> Option<Self> {
-        ModelledModes::followed(&recorded.modelled(fixture)?, recorded, &other.poles(), Some(&other.parts))
+        let test = recorded.modelled(fixture)?;
+        let modes = follow(&test, recorded, &other.poles(), mode)?;
+        ModelledModes::made_of(modes, Some(&other.parts), &test, recorded)
     }
 
-    /// As [`ModelledModes::near`] of a fixture that differs from the one of `about` by a step of a difference alone, for derivatives.
+    /// As [`ModelledModes::near`] of a fixture that differs from the one of `other`, and of `about` where there is one, by a step of a difference alone: for derivatives.
     pub fn after_step(
         fixture: &Fixture,
         recorded: &RecordedModes,
-        (about, other): (&Vicinity, &ModelledModes),
+        (about, other): (Option<&Vicinity>, &ModelledModes),
     ) -> Option<Self> {
-        let test = about.beside(fixture, &recorded.pairs, Instrument::AsRecorded).ok()?;
-        ModelledModes::followed(&test, recorded, &other.poles(), Some(&other.parts))
+        let test = match about {
+            Some(about) => about.beside(fixture, &recorded.pairs, Instrument::AsRecorded).ok()?,
+            None => recorded.modelled(fixture)?,
+        };
+        let modes = follow(&test, recorded, &other.poles(), mode_beside)?;
+        ModelledModes::made_of(modes, Some(&other.parts), &test, recorded)
     }
 
-    fn followed(
+    /// From the modes of a test's model, and what they count as.
+    fn made_of(
+        modes: Vec<ModelledMode>,
+        parts: Option<&[Part]>,
         test: &ModelledTest,
         recorded: &RecordedModes,
-        poles: &[Complex64],
-        parts: Option<&[Part]>,
     ) -> Option<Self> {
-        let mut frfs = test.continued();
-        let modes: Vec<ModelledMode> =
-            poles.iter().map(|pole| mode(&mut frfs, *pole, recorded.frfs())).collect::<Option<_>>()?;
         let own = || modes.iter().map(|mode| Part::of(recorded, &mode.pole)).collect();
         let parts: Vec<Part> = parts.map_or_else(own, <[Part]>::to_vec);
-        let lines = &recorded.outline.lines;
+        let outline = &recorded.outline;
+        let lines = &outline.lines;
         let mut left = test.accelerances(lines).ok()?;
         let of = |wanted: fn(Part) -> bool| {
             modes.iter().zip(&parts).filter(move |(_, part)| wanted(**part)).map(|(mode, _)| mode)
         };
-        let recorded_poles = recorded.outline.poles;
+        let in_band: Vec<(&ModelledMode, Vec<Complex64>)> = of(|part| part != Part::Beyond)
+            .map(|mode| {
+                let along = |omega| mode.pole.accelerance(Complex64::new(0.0, omega));
+                (mode, lines.omegas().map(along).collect())
+            })
+            .collect();
         let mut residual_terms = Vec::with_capacity(recorded.frfs());
         let mut leaks = Vec::with_capacity(recorded.frfs());
         let mut last_term = 0.0;
         for (frf, values) in left.chunks_exact_mut(lines.len()).enumerate() {
-            for (value, omega) in values.iter_mut().zip(lines.omegas()) {
-                let s = Complex64::new(0.0, omega);
-                let modal = of(|part| part != Part::Beyond);
-                *value -= modal.map(|mode| mode.pole.accelerance(s) * mode.residues[frf]).sum::<Complex64>();
+            for (mode, along) in &in_band {
+                let residue = mode.residues[frf];
+                values.iter_mut().zip(along).for_each(|(value, along)| *value -= residue * along);
             }
-            let coefficients = recorded.outline.projections[frf].coefficients(values);
+            let (coefficients, lowered) = outline.projections[frf].with_last(values);
             let low: f64 = of(|part| part == Part::Unresolved).map(|mode| mode.residues[frf].re).sum();
-            let mass_line: f64 = recorded.outline.mass_line.iter().map(|&c| coefficients[c].re).sum();
-            residual_terms.push([mass_line + low, coefficients[recorded_poles + UPPER].re]);
-            leaks.push(coefficients[..recorded.outline.inside].to_vec());
-            last_term += recorded.outline.projections[frf].lowered_by_last(values);
+            let mass_line: f64 = outline.mass_line.iter().map(|&c| coefficients[c].re).sum();
+            residual_terms.push([mass_line + low, coefficients[outline.poles + UPPER].re]);
+            leaks.push(coefficients[..outline.inside].to_vec());
+            last_term += lowered;
         }
-        last_term *= recorded.outline.recorded as f64 / lines.len() as f64;
+        last_term *= outline.recorded as f64 / lines.len() as f64;
         Some(ModelledModes { modes, parts, residual_terms, leaks, last_term })
     }
 
@@ -145,4 +155,15 @@ impl ModelledModes {
     pub fn poles(&self) -> Vec<Complex64> {
         self.modes.iter().map(|mode| mode.pole.lambda()).collect()
     }
+}
+
+/// The modes of a test's model beside known poles, each of them as `found` says.
+fn follow(
+    test: &ModelledTest,
+    recorded: &RecordedModes,
+    poles: &[Complex64],
+    found: fn(&mut ContinuedFrfs, Complex64, usize) -> Option<ModelledMode>,
+) -> Option<Vec<ModelledMode>> {
+    let mut frfs = test.continued();
+    poles.iter().map(|pole| found(&mut frfs, *pole, recorded.frfs())).collect()
 }

@@ -66,14 +66,17 @@ impl Projection {
             .collect()
     }
 
-    /// By how much the last column lowers what the others leave of Σ w|values|².
-    pub(crate) fn lowered_by_last(&self, values: &[Complex64]) -> f64 {
-        self.components(values).1.last().map_or(0.0, |along| along.norm_sqr())
+    /// The coefficients of the combination nearest to `values`.
+    #[cfg(test)]
+    pub(crate) fn coefficients(&self, values: &[Complex64]) -> Vec<Complex64> {
+        self.with_last(values).0
     }
 
-    /// The coefficients of the combination nearest to `values`.
-    pub(crate) fn coefficients(&self, values: &[Complex64]) -> Vec<Complex64> {
-        self.coefficients_of(&self.components(values).1)
+    /// The coefficients of the combination nearest to `values`, and by how much the last column lowers what the others leave of Σ w|values|².
+    pub(crate) fn with_last(&self, values: &[Complex64]) -> (Vec<Complex64>, f64) {
+        let components = self.components(values).1;
+        let lowered = components.last().map_or(0.0, |along| along.norm_sqr());
+        (self.coefficients_of(&components), lowered)
     }
 
     /// The coefficients, and what the combination leaves of √w·`values`.

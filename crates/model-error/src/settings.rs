@@ -114,6 +114,10 @@ pub(crate) mod poles {
     pub(crate) const RADIUS_OF_DECAY: f64 = 0.01;
     /// The same as a share of the pole, at the least: rounding lies well below.
     pub(crate) const LEAST_RADIUS: f64 = 1e-6;
+    /// Radius of the contour that finds a pole beside a known one, as a multiple of the usual radius: a difference's steps of a thousandth of a deviation move poles by 0.4 of that.
+    pub(crate) const WIDE_CONTOUR: f64 = 10.0;
+    /// How far from its centre that contour may find the pole, as a share of the radius. A neighbour as far off as the pole's decay leaves a thousandth of the usual radius.
+    pub(crate) const WELL_INSIDE: f64 = 0.5;
     /// Last step of the secant method, as a share of the contour's radius: the contour then tells the pole. Of much damping it is no longer than [`SAME_POLE`].
     pub(crate) const LAST_STEP: f64 = 1e-3;
 }

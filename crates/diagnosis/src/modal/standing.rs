@@ -99,10 +99,9 @@ impl Problem<'_> {
     ) -> Option<Vec<Vec<f64>>> {
         let about = self.recorded.about(hypothesis.to_fixture().ok()?);
         let beside = |hypothesis: &Hypothesis| {
-            let Some(about) = &about else { return self.modelled(hypothesis, modelled) };
             let fixture = hypothesis.to_fixture().ok()?;
             self.work.count(FOLLOWED_POLES * self.recorded.frfs());
-            ModelledModes::after_step(&fixture, self.recorded, (about, modelled))
+            ModelledModes::after_step(&fixture, self.recorded, (about.as_ref(), modelled))
         };
         of.map(|index| {
             let size = (STEP * priors[index].std).min(MOST_STEP);
