@@ -3,13 +3,13 @@
 //! The parameters of a linear model are integrated out, S + J·Jᵀ; the sizes τ, whose priors are half-normal with scales s, are maximised over:
 //! ln Z = max over τ of [ln N(d; 0, S(τ) + J·Jᵀ) − ½ Σ (τ/s)²]. A size that is stated is taken as it is.
 
-use crate::errors::{Comparison, ErrorSizes, GAIN, KINDS, SizePrior};
+use crate::density::Density;
+use crate::errors::{Comparison, ErrorSizes, KINDS, SizePrior};
+use crate::most_probable::{MostProbable, ln_prior};
 use crate::settings::evidence::{
-    COARSE_SIZES, COARSE_SWEEPS, LEAST_OF_INTERVAL, LEAST_REACH, MOST_STEPS, NEXT_TO_NOTHING,
-    REACH_OF_INTERVAL, REACH_OF_MEAN, REFINEMENTS, SIZES_OF_INTERVAL, SIZES_OF_MEAN,
+    LEAST_OF_INTERVAL, LEAST_REACH, NEXT_TO_NOTHING, REACH_OF_INTERVAL, REACH_OF_MEAN, SIZES_OF_INTERVAL,
+    SIZES_OF_MEAN,
 };
-use jointscope_linalg::Cholesky;
-use std::f64::consts::TAU;
 
 /// A model linearised about its parameters: recorded features less those of the model at the parameters' prior means, and how the model's
 /// features move with each parameter, in prior standard deviations.
@@ -36,6 +36,17 @@ impl Linear {
     /// ln N(difference; 0, S + J·Jᵀ), nats; `None` where that covariance is not positive definite.
     pub fn ln_density(&self, comparison: &Comparison, sizes: &ErrorSizes) -> Option<f64> {
         Density::of(self, comparison).ln(sizes)
+    }
+
+    /// What [`Linear::evidence`] maximises over the sizes, at these: ln of the density and of the sizes' prior, without its normalisation.
+    pub fn ln_evidence_at(
+        &self,
+        comparison: &Comparison,
+        prior: impl Into<SizePrior>,
+        sizes: &ErrorSizes,
+    ) -> Option<f64> {
+        let SizePrior { scales, stated } = prior.into();
+        Some(self.ln_density(comparison, sizes)? + ln_prior(&sizes.to_array(), &scales.to_array(), &stated))
     }
 
     /// Root mean squares of each size over its posterior, the others at their most probable: with few modes a size may well be larger than the
@@ -123,104 +134,20 @@ impl Linear {
         prior: impl Into<SizePrior>,
         start: Option<&ErrorSizes>,
     ) -> Option<Evidence> {
-        let SizePrior { scales, stated } = prior.into();
-        let prior = scales.to_array();
-        let free = (0..KINDS).filter(|kind| !stated[*kind]);
+        let prior = prior.into();
         let mut density = Density::of(self, comparison);
-        let mut value = |sizes: &[f64; KINDS]| -> f64 {
-            let density = density.ln(&ErrorSizes::from_array(*sizes));
-            density.map_or(f64::NEG_INFINITY, |density| density + ln_prior(sizes, &prior, &stated))
-        };
-        let start_at = start.map_or(prior, |sizes| sizes.to_array());
-        let mut best: [f64; KINDS] =
-            std::array::from_fn(|kind| if stated[kind] { prior[kind] } else { start_at[kind] });
-        let mut ln = value(&best);
-        let ln_at_start = ln;
-        let mut try_size = |best: &mut [f64; KINDS], ln: &mut f64, kind: usize, size: f64| {
-            let size = size.max(ErrorSizes::LEAST * prior[kind]);
-            if size == best[kind] {
-                return false;
-            }
-            let mut other = *best;
-            other[kind] = size;
-            let found = value(&other);
-            let better = found > *ln;
-            if better {
-                (*best, *ln) = (other, found);
-            }
-            better
-        };
-        if start.is_none() {
-            for _ in 0..COARSE_SWEEPS {
-                for kind in free.clone() {
-                    for times in COARSE_SIZES {
-                        try_size(&mut best, &mut ln, kind, times * prior[kind]);
-                    }
-                }
-            }
+        let scales = prior.scales.to_array();
+        let is_cold = start.is_none();
+        let start = start.map_or(scales, |sizes| sizes.to_array());
+        let from: [f64; KINDS] =
+            std::array::from_fn(|kind| if prior.stated[kind] { scales[kind] } else { start[kind] });
+        let mut search = MostProbable::about(&mut density, prior, from);
+        let ln_at_start = search.ln;
+        if is_cold {
+            search.over_decades();
         }
-        for factor in REFINEMENTS {
-            for kind in free.clone() {
-                for step in [factor, 1.0 / factor] {
-                    let mut left = MOST_STEPS;
-                    while left > 0 && best[kind] > ErrorSizes::LEAST * prior[kind] * 0.999 {
-                        let size = best[kind] * step;
-                        if !try_size(&mut best, &mut ln, kind, size) {
-                            break;
-                        }
-                        left -= 1;
-                    }
-                }
-            }
-        }
-        ln.is_finite().then(|| Evidence { ln, sizes: ErrorSizes::from_array(best), ln_at_start })
-    }
-}
-
-/// ln of the sizes' prior but for its normalisation: half-normal, and half-Cauchy for gains, of which a test may have any.
-fn ln_prior(sizes: &[f64; KINDS], scales: &[f64; KINDS], stated: &[bool; KINDS]) -> f64 {
-    let of = |kind: usize| {
-        let squared = (sizes[kind] / scales[kind]).powi(2);
-        if kind == GAIN { -(1.0 + squared).ln() } else { -0.5 * squared }
-    };
-    (0..KINDS).filter(|kind| !stated[*kind]).map(of).sum()
-}
-
-/// The density at many sizes of the error: what does not depend on them is formed once.
-struct Density<'a> {
-    comparison: &'a Comparison,
-    difference: &'a [f64],
-    /// Noise and J·Jᵀ, lower triangle.
-    fixed: Vec<f64>,
-    covariance: Vec<f64>,
-    factor: Cholesky,
-    white: Vec<f64>,
-}
-
-impl<'a> Density<'a> {
-    fn of(linear: &'a Linear, comparison: &'a Comparison) -> Self {
-        let n = comparison.count();
-        let mut fixed = comparison.noise.to_vec();
-        for slope in &linear.slopes {
-            for i in 0..n {
-                let a = slope[i];
-                if a != 0.0 {
-                    fixed[i * n..=i * n + i].iter_mut().zip(slope).for_each(|(entry, b)| *entry += a * b);
-                }
-            }
-        }
-        let covariance = vec![0.0; n * n];
-        let (factor, white) = (Cholesky::identity(n), vec![0.0; n]);
-        Density { comparison, difference: &linear.difference, fixed, covariance, factor, white }
-    }
-
-    fn ln(&mut self, sizes: &ErrorSizes) -> Option<f64> {
-        self.covariance.copy_from_slice(&self.fixed);
-        self.comparison.add_errors(sizes, &mut self.covariance);
-        let factor = self.factor.anew(&self.covariance)?;
-        self.white.copy_from_slice(self.difference);
-        factor.solve_lower_in_place(&mut self.white);
-        let chi2: f64 = self.white.iter().map(|v| v * v).sum();
-        Some(-0.5 * (chi2 + factor.ln_determinant() + self.white.len() as f64 * TAU.ln()))
+        search.climb();
+        let sizes = ErrorSizes::from_array(search.sizes);
+        search.ln.is_finite().then_some(Evidence { ln: search.ln, sizes, ln_at_start })
     }
 }

@@ -62,12 +62,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 mod basis;
+mod density;
 mod errors;
 mod evidence;
 mod expected;
 mod free_fit;
 mod matching;
 mod modelled;
+mod most_probable;
 mod of_recording;
 mod outline;
 mod poles;

@@ -180,10 +180,14 @@ pub(crate) mod evidence {
     pub(crate) const COARSE_SIZES: [f64; 7] = [1e-3, 0.1, 0.4, 1.0, 3.0, 10.0, 40.0];
     /// How often all kinds are gone through so: the best size of one depends on those of the others.
     pub(crate) const COARSE_SWEEPS: usize = 2;
-    /// Factors by which each size is refined, one after the other: the last settles it to a twentieth.
-    pub(crate) const REFINEMENTS: [f64; 4] = [3.0, 1.6, 1.25, 1.1];
-    /// Steps by each factor, at most.
+    /// First step of a size's logarithm. The density of a size that ten modes tell is about as wide, and nearly a parabola.
+    pub(crate) const STEP: f64 = 0.3;
+    /// Further steps, each twice as long, at most.
     pub(crate) const MOST_STEPS: usize = 6;
+    /// How often a kind is gone through, at most.
+    pub(crate) const MOST_SWEEPS: usize = 4;
+    /// What a kind must gain to be gone through once more, nats: by as much no name is told from another.
+    pub(crate) const LEAST_GAIN: f64 = 0.02;
     /// How far means and intervals reach at the least: what is larger than that a half-normal prior has with a probability below 10⁻⁴.
     pub(crate) const LEAST_REACH: f64 = 4.0;
     /// How far means reach, as a multiple of the most probable size.
