@@ -3,7 +3,7 @@
 use crate::modal::fit::ModalFit;
 use crate::modal::standing::Problem;
 use crate::settings::ModalSettings;
-use crate::settings::modal::sizes::{LEAST_OF_STATED_DAMPING, NEGLIGIBLE};
+use crate::settings::modal::sizes::{AS_PROBABLE, LEAST_OF_STATED_DAMPING, NEGLIGIBLE};
 use jointscope_fixture::{Fixture, Place, StatedError};
 use jointscope_model_error::{
     DAMPING, ErrorSizes, Evidence, FREQUENCY, GAIN, KINDS, SHAPE, SizePrior, UPPER_RESIDUAL,
@@ -100,7 +100,17 @@ impl Problem<'_> {
     /// Whether what a fit needs of errors, as multiples of what is usual, and of departures, in standard deviations, is no more than `adequate`, and what these
     /// leave of the features is chance: of a mass line that is off by a dozen times what is usual, errors of nothing are as probable as ones that large.
     pub(crate) fn is_adequate(&self, fit: &ModalFit, adequate: (f64, f64)) -> bool {
-        self.largest_size(fit) <= adequate.0 && fit.largest_pull() <= adequate.1 && fit.leaves_chance()
+        (self.largest_size(fit) <= adequate.0 || self.is_as_probable_with(adequate.0, fit))
+            && fit.largest_pull() <= adequate.1
+            && fit.leaves_chance()
+    }
+
+    /// Whether errors of so many times what is usual at the most make a fit no less probable: a size is known to some tenths of itself only, the less the fewer modes there are.
+    fn is_as_probable_with(&self, most: f64, fit: &ModalFit) -> bool {
+        let at =
+            |sizes: &ErrorSizes| fit.linear.ln_evidence_at(&fit.standing.comparison, self.prior(), sizes);
+        let both = at(&fit.evidence.sizes).zip(at(&self.no_larger(fit, most)));
+        both.is_some_and(|(asked, held)| asked - held < AS_PROBABLE)
     }
 
     /// Whether every mode has a partner and errors of the model gain less than this in ln p: among them another distribution of its damping, where no effect makes its own of that.

@@ -349,20 +349,34 @@ fn damping_is_off_by_no_more_than_was_stated_of_it_or_is_usual() {
     let features = Features::of(&observation, &nominal, &Settings::default().modal).unwrap();
     let problem = features.problem(observation.work());
     let mut fit = problem.fitted(&nominal, &priors(&nominal, &[])).unwrap();
+    // Features that ask for errors of damping so many times the usual one of 10 %, whatever the parameters: of n modes that are all off by d, with a half-normal prior of scale s,
+    // d² = τ²(1 + τ²/(n s²)).
+    let ask = |fit: &mut ModalFit, times: f64| {
+        let n = fit.standing.pairing.pairs.len();
+        let off = times * problem.sizes.damping * (1.0 + times.powi(2) / n as f64).sqrt();
+        for mode in 0..n {
+            fit.linear.difference[2 * mode + 1] = off;
+            fit.linear.slopes.iter_mut().for_each(|slope| slope[2 * mode + 1] = 0.0);
+        }
+        fit.evidence.sizes.damping = times * problem.sizes.damping;
+    };
     // Ratios are stated to 15 %, and models of which nothing is stated have them to 10 %.
-    fit.evidence.sizes.damping = 2.5 * problem.sizes.damping;
     let is_adequate = |fit: &ModalFit| problem.is_adequate(fit, (2.0, 4.0));
+    ask(&mut fit, 2.5);
     assert!(!is_adequate(&fit), "the fixture's own modes");
+    ask(&mut fit, 2.05);
+    assert!(is_adequate(&fit), "errors of twice the usual are as probable");
     let lump = Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.1, 1e-6]);
     fit.hypothesis = nominal.with(lump);
+    ask(&mut fit, 2.5);
     assert!(is_adequate(&fit), "those of a structure with a lump");
-    fit.evidence.sizes.damping = 3.5 * problem.sizes.damping;
+    ask(&mut fit, 4.0);
     assert!(!is_adequate(&fit), "more than was stated");
 
     let loosely = BLOCKS.replace("6e-4", "12e-4").replace("9e-4", "18e-4");
     assert_ne!(loosely, BLOCKS);
     fit.hypothesis = Hypothesis::nominal(&Fixture::from_json(&loosely).unwrap(), false);
-    fit.evidence.sizes.damping = 2.5 * problem.sizes.damping;
+    ask(&mut fit, 2.5);
     assert!(is_adequate(&fit), "the fixture's own modes, of which it states ratios to 30 %");
 }
 

@@ -16,6 +16,9 @@ pub(crate) mod sizes {
     pub(crate) const BEYOND_ERRORS: f64 = 4.0;
     /// Share of what the fixture states as deviations of damping ratios that counts as the usual error of them at the least: nobody claimed to know them better than these.
     pub(crate) const LEAST_OF_STATED_DAMPING: f64 = 0.5;
+    /// What a fit may lose in ln p by errors that are held at a limit and is as probable all the same. Beside its dashpot a spring to ground on a solid has damping wrong by 1.5 or by 2.2
+    /// times what was stated with ln p 0.03 apart, whichever the fit comes to.
+    pub(crate) const AS_PROBABLE: f64 = 0.1;
 }
 
 /// What is known of coordinates beforehand, as standard deviations of them.
