@@ -1,7 +1,6 @@
 //! How probable recorded features are at given sizes of a model's error.
 
 use crate::errors::{Comparison, ErrorSizes};
-use crate::evidence::Linear;
 use jointscope_linalg::Cholesky;
 use std::f64::consts::TAU;
 
@@ -17,10 +16,11 @@ pub(crate) struct Density<'a> {
 }
 
 impl<'a> Density<'a> {
-    pub(crate) fn of(linear: &'a Linear, comparison: &'a Comparison) -> Self {
+    /// Of these differences, which each of the parameters moves by its slopes, J's columns.
+    pub(crate) fn of(difference: &'a [f64], slopes: &[Vec<f64>], comparison: &'a Comparison) -> Self {
         let n = comparison.count();
         let mut fixed = comparison.noise.to_vec();
-        for slope in &linear.slopes {
+        for slope in slopes {
             for i in 0..n {
                 let a = slope[i];
                 if a != 0.0 {
@@ -30,7 +30,7 @@ impl<'a> Density<'a> {
         }
         let covariance = vec![0.0; n * n];
         let (factor, white) = (Cholesky::identity(n), vec![0.0; n]);
-        Density { comparison, difference: &linear.difference, fixed, covariance, factor, white }
+        Density { comparison, difference, fixed, covariance, factor, white }
     }
 
     /// ln N(d; 0, C), nats; `None` where C is not positive definite.

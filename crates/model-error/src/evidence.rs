@@ -35,7 +35,11 @@ pub struct Evidence {
 impl Linear {
     /// ln N(difference; 0, S + J·Jᵀ), nats; `None` where that covariance is not positive definite.
     pub fn ln_density(&self, comparison: &Comparison, sizes: &ErrorSizes) -> Option<f64> {
-        Density::of(self, comparison).ln(sizes)
+        self.density(comparison).ln(sizes)
+    }
+
+    fn density<'a>(&'a self, comparison: &'a Comparison) -> Density<'a> {
+        Density::of(&self.difference, &self.slopes, comparison)
     }
 
     /// What [`Linear::evidence`] maximises over the sizes, at these: ln of the density and of the sizes' prior, without its normalisation.
@@ -59,7 +63,7 @@ impl Linear {
     ) -> ErrorSizes {
         let SizePrior { scales, stated } = prior.into();
         let (prior, at) = (scales.to_array(), best.sizes.to_array());
-        let mut density = Density::of(self, comparison);
+        let mut density = self.density(comparison);
         let mut mean = |kind: usize| {
             if stated[kind] {
                 return at[kind];
@@ -94,7 +98,7 @@ impl Linear {
         if stated[kind] {
             return [at[kind]; 2];
         }
-        let mut density = Density::of(self, comparison);
+        let mut density = self.density(comparison);
         let low = LEAST_OF_INTERVAL * prior[kind];
         let high = (LEAST_REACH * prior[kind]).max(REACH_OF_INTERVAL * at[kind]);
         let size = |k: usize| low * (high / low).powf(k as f64 / (SIZES_OF_INTERVAL - 1) as f64);
@@ -135,7 +139,7 @@ impl Linear {
         start: Option<&ErrorSizes>,
     ) -> Option<Evidence> {
         let prior = prior.into();
-        let mut density = Density::of(self, comparison);
+        let mut density = self.density(comparison);
         let scales = prior.scales.to_array();
         let is_cold = start.is_none();
         let start = start.map_or(scales, |sizes| sizes.to_array());
