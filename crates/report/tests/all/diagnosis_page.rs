@@ -147,8 +147,9 @@ fn where_nothing_is_left_out_the_page_says_so_and_shows_no_repaired_model() {
 
 #[test]
 fn a_mismatch_without_a_name_is_shown_by_place_and_band() {
+    // A phase that grew over the band would be a delay, by and large.
     let odd = |frf: usize, share: f64| match frf {
-        0 => Complex64::from_polar(1.0 + 0.2 * (9.0 * share).sin(), 0.6 * share * share),
+        0 => Complex64::from_polar(1.0 + 0.2 * (9.0 * share).sin(), 0.2 * (9.0 * share).cos()),
         _ => Complex64::ONE,
     };
     let (diagnosis, html) = page("", odd);
