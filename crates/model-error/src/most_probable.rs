@@ -79,7 +79,7 @@ impl<'s, 'd> MostProbable<'s, 'd> {
         let mut tried = |at: f64| Point { at, ln: self.tried(kind, at.exp()) };
         let up = tried(here.at + STEP);
         let bracket = if up.ln > here.ln {
-            onward([here, up], f64::INFINITY, &mut tried)
+            onward([here, up], f64::NEG_INFINITY, &mut tried)
         } else if here.at - STEP < least {
             return;
         } else {
@@ -102,19 +102,19 @@ struct Point {
     ln: f64,
 }
 
-/// Three points with the highest between the others, by steps twice as long each time in the direction in which the second of two points is higher; `None` where there is none short of `end`.
+/// Three points with the highest between the others, by steps twice as long each time in the direction in which the second of two points is higher, down to `least`; `None` where that is the
+/// highest of all.
 fn onward(
     [mut before, mut here]: [Point; 2],
-    end: f64,
+    least: f64,
     tried: &mut impl FnMut(f64) -> Point,
 ) -> Option<[Point; 3]> {
     for _ in 0..MOST_STEPS {
-        let next = here.at + 2.0 * (here.at - before.at);
-        let there = tried(if end.is_finite() { next.max(end) } else { next });
+        let there = tried((here.at + 2.0 * (here.at - before.at)).max(least));
         if there.ln <= here.ln {
             return Some([before, here, there]);
         }
-        if there.at == end {
+        if there.at == least {
             return None;
         }
         (before, here) = (here, there);

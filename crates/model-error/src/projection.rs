@@ -66,12 +66,6 @@ impl Projection {
             .collect()
     }
 
-    /// The coefficients of the combination nearest to `values`.
-    #[cfg(test)]
-    pub(crate) fn coefficients(&self, values: &[Complex64]) -> Vec<Complex64> {
-        self.with_last(values).0
-    }
-
     /// The coefficients of the combination nearest to `values`, and by how much the last column lowers what the others leave of Σ w|values|².
     pub(crate) fn with_last(&self, values: &[Complex64]) -> (Vec<Complex64>, f64) {
         let components = self.components(values).1;
@@ -167,7 +161,7 @@ mod tests {
         ) {
             let projection = Projection::new(&rows, &weights).unwrap();
             let (coefficients, left) = projection.split(&values);
-            prop_assert_eq!(&coefficients, &projection.coefficients(&values));
+            prop_assert_eq!(&coefficients, &projection.with_last(&values).0);
             for column in 0..COLUMNS {
                 let along: Complex64 =
                     (0..LINES).map(|k| (rows[k][column] * weights[k].sqrt()).conj() * left[k]).sum();
@@ -199,7 +193,7 @@ mod tests {
             (0..6).map(|k| vec![Complex64::ONE, Complex64::new(0.0, f64::from(k))]).collect();
         let mut values: Vec<Complex64> = rows.iter().map(|row| row[0] * 2.0 - row[1]).collect();
         values[3] = Complex64::from(1e6);
-        let found = Projection::new(&rows, &[1.0, 1.0, 1.0, 0.0, 1.0, 1.0]).unwrap().coefficients(&values);
+        let found = Projection::new(&rows, &[1.0, 1.0, 1.0, 0.0, 1.0, 1.0]).unwrap().with_last(&values).0;
         assert!((found[0] - 2.0).norm() < 1e-12 && (found[1] + 1.0).norm() < 1e-12, "{found:?}");
     }
 
