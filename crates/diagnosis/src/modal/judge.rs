@@ -67,6 +67,7 @@ impl Judge<'_> {
             strained: self.searcher.problem.recorded.is_strained(),
             errors: [&self.search.none, &self.search.best.fit].map(error),
             states_gain: false,
+            since_baseline: self.searcher.calibrated,
             stated,
             covariance,
             features,

@@ -37,6 +37,8 @@ pub(crate) struct ModalJudgement {
     pub errors: [ModelError; 2],
     /// Whether the fixture states how well the gains of its records are known.
     pub states_gain: bool,
+    /// Whether it is of what has changed since a baseline.
+    pub since_baseline: bool,
     /// The fixture by itself and the best hypothesis, at the most probable sizes of error: what is said of quantities and effects.
     pub stated: [Hypothesis; 2],
     /// Covariance of the best one's coordinates with sizes that may be larger.

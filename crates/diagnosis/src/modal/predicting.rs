@@ -15,6 +15,7 @@ use crate::modal::standing::{Iterate, Problem};
 use crate::search::Search;
 use crate::settings::ModalSettings;
 use crate::settings::effects::quantities::DEPARTED;
+use crate::settings::modal::judgement::NO_PEAK;
 use crate::work::Work;
 use crate::{Hypothesis, Observation};
 use jointscope_findings::Verdict;
@@ -35,7 +36,27 @@ impl ModalJudgement {
         if self.verdict == Verdict::PartlyExplained && misses {
             return (self.withdrawn(), Search { repaired: search.refitted.clone(), ..search });
         }
+        if self.verdict == Verdict::Explained && self.leaves_untold(fitter, &search) {
+            return (self.doubted(), search);
+        }
         (self.clone(), search)
+    }
+
+    /// Whether lines miss much of a recording that modes do not tell: what a free fit took residual terms for passes for errors in what lies outside the band, and what it took a mode for
+    /// is held against no name. What a calibrated model is off by in both states is neither.
+    fn leaves_untold(&self, fitter: &Fitter, search: &Search) -> bool {
+        let ModalSettings { untold, slight, .. } = fitter.settings.modal;
+        let Search { refitted, repaired, .. } = search;
+        let leaves =
+            repaired.chi2_per_dof(fitter.observation) > slight && repaired.chi2 > untold * refitted.chi2;
+        leaves && !self.since_baseline && (self.tells_little(fitter) || self.has_no_peak())
+    }
+
+    /// Whether something is recorded beside the modes of the model that is as wide as no mode of a structure.
+    fn has_no_peak(&self) -> bool {
+        let pairs = &self.search.best.fit.standing.pairing.pairs;
+        let mut modes = self.features.recorded.modes.iter().enumerate();
+        modes.any(|(at, mode)| mode.pole.damping_ratio > NO_PEAK && pairs.iter().all(|(own, _)| *own != at))
     }
 
     /// The same with the model as it is stated where that comes closer to the recorded lines than one that follows frequencies, and with the fixture as it was given where that

@@ -177,6 +177,31 @@ fn what_explains_modes_in_part_is_stated_only_where_lines_too_miss_less_with_it(
 }
 
 #[test]
+fn what_leaves_much_of_lines_that_modes_do_not_tell_is_a_part_of_it() {
+    let fixture = Fixture::from_json(BLOCKS).unwrap();
+    let nominal = Hypothesis::nominal(&fixture, false);
+    let lump =
+        |mass| nominal.with(Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.1, mass]));
+    let observation = recorded(&lump(0.2));
+    let settings = Settings::default();
+    let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
+    let within = Search::without_effects(&fitter, &fixture, false).unwrap();
+    let mut judged = ModalJudgement::of(&fitter, &nominal, &[], None).unwrap();
+    judged.verdict = Verdict::Explained;
+    // A tenth of the mass is a hundredth of the squares, more than half of it more than a tenth.
+    for (mass, strained, since_baseline, verdict) in [
+        (0.09, true, false, Verdict::PartlyExplained),
+        (0.18, true, false, Verdict::Explained),
+        (0.09, false, false, Verdict::Explained),
+        (0.09, true, true, Verdict::Explained),
+    ] {
+        (judged.strained, judged.since_baseline, judged.stated[1]) = (strained, since_baseline, lump(mass));
+        let (predicted, _) = judged.predicted(&fitter, &within);
+        assert_eq!(predicted.verdict, verdict, "{mass} kg of 0.2 kg, {strained}, {since_baseline}");
+    }
+}
+
+#[test]
 fn a_dashpot_is_known_no_better_than_the_damping_of_the_modes_that_it_damps() {
     // It turns the phases of their shapes too, which are recorded far more sharply than any model has their damping.
     let values = [0.1, 0.06, 200.0, 0.01];

@@ -127,6 +127,8 @@ pub(crate) mod judgement {
     pub(crate) const CERTAIN: f64 = 3.0;
     /// Probability of names that explain the modes, and not the lines: what a usual finding has beside the largest weight of something that is not listed.
     pub(crate) const AT_ODDS: f64 = 2.0 / 3.0;
+    /// Damping ratio of a recorded pole above which it stands for no mode, half its frequency wide: a ripple over the band had 0.8.
+    pub(crate) const NO_PEAK: f64 = 0.25;
 }
 
 /// Modes of two recordings of a structure.

@@ -146,6 +146,21 @@ fn where_nothing_is_left_out_the_page_says_so_and_shows_no_repaired_model() {
 }
 
 #[test]
+fn a_delay_beside_a_ripple_is_said_not_to_be_all() {
+    // The phase grows over the band as a delay's does; what ripples beside it passes for errors in what lies outside the band.
+    let odd = |frf: usize, share: f64| match frf {
+        0 => Complex64::from_polar(1.0 + 0.2 * (9.0 * share).sin(), 0.6 * share * share),
+        _ => Complex64::ONE,
+    };
+    let (diagnosis, html) = page("", odd);
+    assert_ne!(diagnosis.verdict, Verdict::Consistent);
+    assert_ne!(diagnosis.verdict, Verdict::Explained, "{}", diagnosis.says());
+    assert!(diagnosis.findings.iter().all(|finding| finding.probability < 0.9), "{}", diagnosis.says());
+    let all = ["but that is not all", "none of the effects known here accounts"];
+    assert!(all.iter().any(|told| html.contains(told)), "{}", diagnosis.says());
+}
+
+#[test]
 fn a_mismatch_without_a_name_is_shown_by_place_and_band() {
     // A phase that grew over the band would be a delay, by and large.
     let odd = |frf: usize, share: f64| match frf {
