@@ -63,9 +63,11 @@ impl Searcher<'_> {
         let mut chosen = self.rescored(scored);
         let mut seen = BTreeSet::new();
         chosen.retain(|start| seen.insert(start.candidate));
+        // What the base explains needs nothing that explains less.
+        let least = if self.is_adequate(&base.fit) { base.fit.ln } else { ANY };
         let mut fits = self.problem.work.each(chosen, STARTS, |start| {
             let names = groups.iter().find(|names| names[0] == start.candidate)?;
-            self.fitted_with(base, names, &start.hypothesis, (SetOut::Both, ANY))
+            self.fitted_with(base, names, &start.hypothesis, (SetOut::Both, least))
         });
         fits.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
         fits

@@ -52,15 +52,36 @@ impl Searcher<'_> {
         let set_out = if is_costly() { SetOut::Usual } else { SetOut::Both };
         let mut fits = self.fitted(base, chosen, set_out);
         // Only what explains the modes shows that others need not be fitted; where fits are cheap they all are, for some may lead the fixture itself out of a false minimum.
-        let best = fits.first().filter(|best| is_costly() && self.is_adequate(&best.fit));
-        let best = best.map_or(f64::NEG_INFINITY, |best| best.fit.ln);
+        let explains =
+            fits.first().filter(|best| self.is_adequate(&best.fit)).map_or(ANY, |best| best.fit.ln);
+        let best = if is_costly() { explains } else { ANY };
         let near = rest.into_iter().filter(|start| best - start.density < far).collect();
-        fits.extend(self.fitted(base, near, SetOut::Usual));
-        let fits = best_of_each(fits);
+        fits = self.with_these(base, fits, near, explains);
         let unfitted = |c: &usize| fits.iter().all(|named| named.names.last() != Some(c));
         let below = densities.into_iter().filter(|(_, density)| best - density >= far).map(|(c, _)| c);
         let far = below.filter(unfitted).collect();
         (fits, far)
+    }
+
+    /// The best fit of each candidate, these and from starts that follow the foremost: one of each first. Where something `explains` the modes, with this ln p, only what came near it sets
+    /// out from elsewhere too.
+    fn with_these(
+        &self,
+        base: &Named,
+        mut fits: Vec<Named>,
+        starts: Vec<Start>,
+        explains: f64,
+    ) -> Vec<Named> {
+        let mut seen: BTreeSet<usize> = fits.iter().filter_map(|named| named.names.last().copied()).collect();
+        let (first, mut others): (Vec<Start>, Vec<Start>) =
+            starts.into_iter().partition(|start| seen.insert(start.candidate) || explains == ANY);
+        fits.extend(self.fitted(base, first, SetOut::Usual));
+        others.retain(|start| {
+            let mut own = fits.iter().filter(|named| named.names.last() == Some(&start.candidate));
+            own.all(|named| explains - named.fit.ln < self.settings.exchanged.2)
+        });
+        fits.extend(self.fitted(base, others, SetOut::Usual));
+        best_of_each(fits)
     }
 
     /// Fits from starts with one effect more than `base`, the best of each candidate, the most probable first. What lies far below the first of them is not fitted closely.
