@@ -187,7 +187,7 @@ fn without_drift_few_tests_look_as_if_there_were() {
 
 #[test]
 #[ignore = "measures: how often tests without drift look as if there were"]
-fn measures_false_alarms() {
+fn tests_without_drift_seldom_look_as_if_there_were() {
     let common = |seed, noise: (f64, f64)| {
         let hammer =
             HammerTest { common_hits: true, noise_response: noise.0, noise_force: noise.1, ..hammer(seed) };
@@ -210,7 +210,7 @@ fn measures_false_alarms() {
 
 #[test]
 #[ignore = "measures: from which size drift is found"]
-fn measures_power() {
+fn drift_is_found_from_some_size_on() {
     for percent in [5.0, 1.5, 0.5, 0.1, 0.05, 0.02, 0.01, 0.005] {
         let found = (0..20).filter(|seed| {
             let (fixture, frfs) = blocks(&[], &[("2", vec![softer("J", 1.0 - 0.01 * percent)])], *seed);
