@@ -1,3 +1,5 @@
+//! Bands of frequency.
+
 use crate::AveragingError;
 use serde::Serialize;
 

@@ -26,7 +26,7 @@ use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use crate::refusal::Refusal;
 use crate::said::Said;
 
-/// Stiffness and damping of a joint from hammer tests on the blocks it connects.
+/// What a model of an assembly leaves out, and how stiff and damped its joints are, from hammer tests.
 #[derive(Debug, Parser)]
 #[command(name = "jointscope", version, max_term_width = 110, after_help = STATUS)]
 pub(crate) struct Program {

@@ -1,3 +1,5 @@
+//! Several decompositions side by side: ratios and orders of their elements, and what to be careful about.
+
 use crate::tests_of_equality::Tests;
 use crate::{
     Caution, Compared, Decomposed, ELEMENTS, Equality, Estimate, FiledJoint, Kind, LawOfAll, ModelRatios,

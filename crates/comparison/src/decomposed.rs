@@ -1,3 +1,5 @@
+//! What `stiffness.json` says of one decomposition, read back.
+
 use crate::stiffness_file::{EstimateEntry, LineEntry, Matrix, MatrixPair, Nominal, read};
 use crate::{AtOnce, FiledJoint, Place, Source};
 use serde::Deserialize;

@@ -1,3 +1,5 @@
+//! Orders of several numbers with deviations, and how probable each is.
+
 use jointscope_linalg::semidefinite_factor;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

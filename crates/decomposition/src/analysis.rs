@@ -1,8 +1,8 @@
 //! A recording decomposed for a joint: all that was found.
 
 use crate::{
-    Averages, DecompositionError, Element, InterfaceSpectrum, Interfaces, JointEnds, JointFit, JointSpectrum,
-    Judgement, LikelihoodFit, MeasurementPlan, Method, Part, Relation, ToleranceShare,
+    Averages, CrossingFrfs, DecompositionError, Element, InterfaceSpectrum, Interfaces, JointEnds, JointFit,
+    JointSpectrum, Judgement, LikelihoodFit, Method, Part, Relation, ToleranceShare,
 };
 use jointscope_frf::noise::NoiseSource;
 use jointscope_linalg::{ComplexMatrix2, RealMatrix2};
@@ -22,7 +22,7 @@ pub struct Analysis {
     /// Number of lines recorded, where they were merged.
     pub merged_from: Option<usize>,
     /// Which FRFs were used and from where.
-    pub plan: MeasurementPlan,
+    pub plan: CrossingFrfs,
     /// K and C by line.
     pub spectrum: JointSpectrum,
     /// Averages over the band.

@@ -1,10 +1,12 @@
+//! Which FRFs of a recording cross a joint, and which of them tell the motion of one side due to loads on the other.
+
 use crate::Sides;
 use jointscope_frf::{BlockChannel, BlockLayout};
 use jointscope_spectra::{Channel, FrfPair, FrfSet};
 
 /// What a recording lacks for finding a joint.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum PlanError {
+pub enum CrossingError {
     /// No FRF crosses the joint.
     #[error(
         "no FRF of the recording crosses joint `{joint}`: needed are hammer points on one side ({alpha}) and sensors on the other ({beta}); the recording has {found}"
@@ -60,7 +62,7 @@ pub enum PlanError {
 ///
 /// FRFs with the hammer on β and the sensor on α count by reciprocity.
 #[derive(Debug, Clone, PartialEq)]
-pub struct MeasurementPlan {
+pub struct CrossingFrfs {
     /// The FRFs and their positions, as [`jointscope_frf::fit_rigid_motion`] wants them.
     pub layout: BlockLayout,
     /// Body and abscissa (m) of the loaded block's reference point, "1", and the point's name.
@@ -78,13 +80,13 @@ struct Crossing<'a> {
     beta: Position<'a>,
 }
 
-impl MeasurementPlan {
+impl CrossingFrfs {
     /// Chooses the FRFs: those between the pair of blocks, one on each side, that most FRFs connect; of equals,
     /// the blocks that the joint itself connects.
     ///
     /// # Errors
-    /// See [`PlanError`].
-    pub(crate) fn of(frfs: &FrfSet, sides: &Sides) -> Result<Self, PlanError> {
+    /// See [`CrossingError`].
+    pub(crate) fn of(frfs: &FrfSet, sides: &Sides) -> Result<Self, CrossingError> {
         let crossings = crossings(frfs, sides);
         if crossings.is_empty() {
             return Err(nothing_crosses(frfs, sides));
@@ -101,7 +103,7 @@ impl MeasurementPlan {
         let rigid: Vec<_> = pairs.iter().filter(|p| !bends(p.0) && !bends(p.1)).copied().collect();
         let Some(&(alpha, beta)) = rigid.iter().max_by_key(|p| (count(p), own(p))) else {
             let body = pairs.iter().flat_map(|p| [p.0, p.1]).find(|&b| bends(b)).unwrap_or(near);
-            return Err(PlanError::Deformable {
+            return Err(CrossingError::Deformable {
                 joint: sides.joint().name.clone(),
                 body: fixture.bodies()[body].name.clone(),
             });
@@ -115,12 +117,12 @@ impl MeasurementPlan {
         crossings: &[Crossing],
         alpha: usize,
         beta: usize,
-    ) -> Result<Self, PlanError> {
+    ) -> Result<Self, CrossingError> {
         let fixture = sides.fixture();
         let rotates = |body: usize| fixture.bodies()[body].kind.rotates();
         if rotates(alpha) != rotates(beta) {
             let (rotating, other) = if rotates(alpha) { (alpha, beta) } else { (beta, alpha) };
-            return Err(PlanError::Mixed {
+            return Err(CrossingError::Mixed {
                 joint: sides.joint().name.clone(),
                 rotating: fixture.bodies()[rotating].name.clone(),
                 other: fixture.bodies()[other].name.clone(),
@@ -153,7 +155,7 @@ impl MeasurementPlan {
             .map(|(_, pair)| pair.clone())
             .collect();
         let named = |(body, x, channel): Position| (body, x, channel.point.clone());
-        Ok(MeasurementPlan { layout, loaded: named(loaded), responding: named(responding), unused })
+        Ok(CrossingFrfs { layout, loaded: named(loaded), responding: named(responding), unused })
     }
 
     /// Whether the blocks do not rotate, so that the joint is the scalar of eq (5).
@@ -191,12 +193,12 @@ fn crossings<'a>(frfs: &'a FrfSet, sides: &Sides) -> Vec<Crossing<'a>> {
     all
 }
 
-fn nothing_crosses(frfs: &FrfSet, sides: &Sides) -> PlanError {
+fn nothing_crosses(frfs: &FrfSet, sides: &Sides) -> CrossingError {
     let points = |alpha: bool| {
         let names = sides.fixture().points().iter().filter(|p| sides.is_on_alpha(p.body) == alpha);
         names.map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ")
     };
-    PlanError::NothingCrosses {
+    CrossingError::NothingCrosses {
         joint: sides.joint().name.clone(),
         alpha: points(true),
         beta: points(false),
@@ -214,7 +216,7 @@ fn check_complete(
     sides: &Sides,
     used: &[&Crossing],
     layout: &BlockLayout,
-) -> Result<(), PlanError> {
+) -> Result<(), CrossingError> {
     let distinct = |channels: Vec<&Channel>| {
         let mut all: Vec<Channel> = channels.into_iter().cloned().collect();
         all.sort();
@@ -225,7 +227,7 @@ fn check_complete(
     let beta = distinct(used.iter().map(|c| c.beta.2).collect());
     let fail = |missing: String| {
         let found = used.iter().map(|c| frfs.pairs()[c.index].clone()).collect::<Vec<_>>();
-        Err(PlanError::NotEnough { joint: sides.joint().name.clone(), found: names(&found), missing })
+        Err(CrossingError::NotEnough { joint: sides.joint().name.clone(), found: names(&found), missing })
     };
     let needed = if layout.rotate[0] { 2 } else { 1 };
     if beta.len() < needed {

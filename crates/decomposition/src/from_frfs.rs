@@ -5,9 +5,9 @@ use crate::interface_tolerances::interfaces_with_tolerances;
 use crate::interfaces::interfaces_of_fit;
 use crate::spectrum::scalar_stiffness;
 use crate::{
-    Analysis, Averages, DecompositionError, Interfaces, JointEnds, JointFit, JointFitOptions, JointSpectrum,
-    Judgement, LikelihoodFit, MeasurementPlan, NominalResult, Relation, Sides, ToleranceShare,
-    ToleranceShares, decompose, fit_joint, interfaces, maximum_likelihood, tolerance_shares,
+    Analysis, Averages, CrossingFrfs, DecompositionError, Interfaces, JointEnds, JointFit, JointFitOptions,
+    JointSpectrum, Judgement, LikelihoodFit, NominalResult, Relation, Sides, ToleranceShare, ToleranceShares,
+    decompose, fit_joint, interfaces, maximum_likelihood, tolerance_shares,
 };
 use jointscope_averaging::Band;
 use jointscope_fixture::{Fixture, JointLaw, Nature};
@@ -59,7 +59,7 @@ impl Analysis {
         options: &AnalysisOptions,
     ) -> Result<Self, DecompositionError> {
         let sides = Sides::of(fixture, options.joint.as_deref())?;
-        let plan = MeasurementPlan::of(frfs, &sides)?;
+        let plan = CrossingFrfs::of(frfs, &sides)?;
         let KnownNoise { frfs, noise, merged_from, .. } =
             KnownNoise::of(frfs, options.band.map(|band| (band.from, band.to)))
                 .map_err(jointscope_frf::RigidMotionError::from)?;
@@ -145,7 +145,7 @@ fn joint_interfaces(fit: &LikelihoodFit, sides: &Sides, tolerances: &[ToleranceS
 /// H41 of the whole fixture between the plan's reference points, and what the spectrum's relation makes of it.
 fn predicted(
     sides: &Sides,
-    plan: &MeasurementPlan,
+    plan: &CrossingFrfs,
     spectrum: &JointSpectrum,
 ) -> Result<Vec<Option<(ComplexMatrix2, ComplexMatrix2)>>, DecompositionError> {
     let lines = &spectrum.h41.lines;

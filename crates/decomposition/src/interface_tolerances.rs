@@ -2,7 +2,7 @@
 
 use crate::settings::differences::TOLERANCE_STEP;
 use crate::spectrum::read_at_s;
-use crate::{IdlePoints, InterfaceSpectrum, JointSpectrum, MeasurementPlan, Sides, interface_spectrum};
+use crate::{CrossingFrfs, IdlePoints, InterfaceSpectrum, JointSpectrum, Sides, interface_spectrum};
 use jointscope_fixture::Fixture;
 use jointscope_frf::fit_rigid_motion;
 use jointscope_spectra::FrfSet;
@@ -46,7 +46,7 @@ fn read_with(
     spectrum: &JointSpectrum,
 ) -> Option<JointSpectrum> {
     let sides = Sides::of(fixture, Some(&stated.joint().name)).ok()?;
-    let plan = MeasurementPlan::of(frfs, &sides).ok()?;
+    let plan = CrossingFrfs::of(frfs, &sides).ok()?;
     let (loaded, responding) = (&plan.loaded, &plan.responding);
     let compliances =
         sides.compliances(frfs.lines(), (loaded.0, loaded.1), (responding.0, responding.1)).ok()?;

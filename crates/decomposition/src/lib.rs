@@ -10,7 +10,7 @@
 //! * [`Relation`]: both relations for one line and for many;
 //! * [`Sides`]: the fixture taken apart at a joint, and the compliances α21, α22, β33, β43 of its sides with their
 //!   supports, masses and mass-proportional damping (eq 8–12);
-//! * [`MeasurementPlan`]: which FRFs of a recording tell the motion of one side due to loads on the other;
+//! * [`CrossingFrfs`]: which FRFs of a recording tell the motion of one side due to loads on the other;
 //! * [`decompose`]: K(ω) and C(ω) with standard deviations, masked lines counted ([`JointSpectrum`]);
 //! * [`Analysis`]: all of it for one recording, with what the fixture's tolerances add;
 //! * [`Averages`]: means over a band, plain (eq 35, 42) and weighted;
@@ -40,6 +40,7 @@ mod analysis;
 mod averages;
 mod by_law;
 mod criteria;
+mod crossing;
 mod element;
 mod estimate;
 mod from_frfs;
@@ -53,7 +54,6 @@ mod joint_fit;
 mod judgement;
 mod likelihood;
 mod method;
-mod plan;
 mod relation;
 mod settings;
 mod sides;
@@ -62,6 +62,7 @@ mod tolerances;
 
 pub use analysis::Analysis;
 pub use averages::{Averages, MatrixAverage};
+pub use crossing::{CrossingError, CrossingFrfs};
 pub use element::{Element, Part};
 pub use estimate::{Estimate, Figure};
 pub use from_frfs::AnalysisOptions;
@@ -80,7 +81,6 @@ pub use joint_fit::{
 pub use judgement::{Contradiction, Judgement, Use};
 pub use likelihood::{LikelihoodFit, maximum_likelihood};
 pub use method::Method;
-pub use plan::{MeasurementPlan, PlanError};
 pub use relation::{Compliances, Relation};
 pub use sides::{Sides, SidesError};
 pub use spectrum::{JointLine, JointSpectrum, decompose};
@@ -95,7 +95,7 @@ pub enum DecompositionError {
     Sides(#[from] SidesError),
     /// The recording lacks what is needed.
     #[error(transparent)]
-    Plan(#[from] PlanError),
+    Plan(#[from] CrossingError),
     /// The blocks' motion cannot be found.
     #[error(transparent)]
     Motion(#[from] jointscope_frf::RigidMotionError),

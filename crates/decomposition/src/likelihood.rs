@@ -9,7 +9,7 @@ pub(crate) use shift::Optimum;
 
 use crate::settings::constant_joint::{POOR_FIT, START_DAMPING_TIME, STEP_DAMPING};
 use crate::settings::noise::{EXPLAINED, JACKKNIFE_BLOCKS};
-use crate::{DecompositionError, JointSpectrum, MeasurementPlan, Sides};
+use crate::{CrossingFrfs, DecompositionError, JointSpectrum, Sides};
 use data::{Data, Part};
 use jointscope_averaging::Band;
 use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend, jackknife};
@@ -63,7 +63,7 @@ pub fn maximum_likelihood(
     band: Option<Band>,
     nominal: Option<RealMatrix2>,
 ) -> Result<LikelihoodFit, DecompositionError> {
-    let plan = MeasurementPlan::of(frfs, sides)?;
+    let plan = CrossingFrfs::of(frfs, sides)?;
     let data = Data::new(frfs, (&plan.layout, sides), spectrum, band)?;
     let all = data.whole();
     let starts = [Some(start_of(spectrum)), nominal].into_iter().flatten();

@@ -1,3 +1,5 @@
+//! The relations (4) to (7) between FRFs across a joint and its compliances.
+
 use jointscope_beam::transport;
 use jointscope_linalg::{ComplexMatrix2, Matrix2};
 use serde::Serialize;

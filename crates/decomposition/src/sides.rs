@@ -1,3 +1,5 @@
+//! The two sides of a joint: which points and bodies are on which.
+
 use crate::Compliances;
 use jointscope_fixture::{Effect, Entry, Fixture, Place};
 use jointscope_linalg::{ComplexMatrix2, Matrix2};

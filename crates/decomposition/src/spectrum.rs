@@ -1,5 +1,7 @@
+//! A joint's compliances line by line, by one of the relations (4) to (7).
+
 use crate::settings::spectra::{INDICATIVE_NOISE, SINGULAR_CONDITION};
-use crate::{Compliances, DecompositionError, MeasurementPlan, Relation, Sides};
+use crate::{Compliances, CrossingFrfs, DecompositionError, Relation, Sides};
 use jointscope_frf::{BlockFrf, MaskReason, fit_rigid_motion};
 use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
 use jointscope_spectra::FrfSet;
@@ -110,7 +112,7 @@ pub fn decompose(
     sides: &Sides,
     relation: Relation,
 ) -> Result<JointSpectrum, DecompositionError> {
-    let plan = MeasurementPlan::of(frfs, sides)?;
+    let plan = CrossingFrfs::of(frfs, sides)?;
     let h41 = read_at_s(fit_rigid_motion(frfs, &plan.layout)?, sides);
     let compliances = sides.compliances(
         frfs.lines(),

@@ -7,9 +7,7 @@ use crate::interfaces::left_over;
 use crate::likelihood::Optimum;
 use crate::settings::differences::TOLERANCE_STEP;
 use crate::spectrum::{dynamic_stiffness_on, read_at_s};
-use crate::{
-    Compliances, DecompositionError, IdlePoints, JointSpectrum, LikelihoodFit, MeasurementPlan, Sides,
-};
+use crate::{Compliances, CrossingFrfs, DecompositionError, IdlePoints, JointSpectrum, LikelihoodFit, Sides};
 use jointscope_averaging::Band;
 use jointscope_fixture::Fixture;
 use jointscope_frf::fit_rigid_motion;
@@ -67,7 +65,7 @@ pub(crate) fn tolerance_shares(
 ) -> Result<ToleranceShares, DecompositionError> {
     let fixture = of.sides.fixture();
     let quantities = if exact { fixture.quantities_exact() } else { fixture.quantities() };
-    let plan = MeasurementPlan::of(of.frfs, of.sides)?;
+    let plan = CrossingFrfs::of(of.frfs, of.sides)?;
     let optimum =
         of.fit.and_then(|(fit, spectrum, band)| Optimum::of(of.frfs, (&plan, of.sides), spectrum, band, fit));
     let mean = mean(of, of.sides, &of.spectrum.h41.values, &of.spectrum.sides);
@@ -104,7 +102,7 @@ type Matrices = (RealMatrix2, RealMatrix2);
 /// What the fixture as stated makes of the recording.
 struct Stated<'a> {
     of: &'a NominalResult<'a>,
-    plan: MeasurementPlan,
+    plan: CrossingFrfs,
     mean: Matrices,
     optimum: Option<Optimum<'a>>,
 }
@@ -124,7 +122,7 @@ impl Stated<'_> {
     fn change(&self, fixture: &Fixture) -> Option<(Matrices, Option<Matrices>)> {
         let of = self.of;
         let sides = Sides::of(fixture, Some(&of.sides.joint().name)).ok()?;
-        let plan = MeasurementPlan::of(of.frfs, &sides).ok()?;
+        let plan = CrossingFrfs::of(of.frfs, &sides).ok()?;
         let (loaded, responding) = (&plan.loaded, &plan.responding);
         let compliances =
             sides.compliances(of.frfs.lines(), (loaded.0, loaded.1), (responding.0, responding.1)).ok()?;

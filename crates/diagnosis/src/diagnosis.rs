@@ -1,3 +1,5 @@
+//! The whole diagnosis: what is left out before it, the route, and what is done once more with other noise.
+
 use crate::contradiction::contradictory;
 use crate::departures::{Departure, departures, has_departed};
 use crate::drift::{Drifted, TestDrift};

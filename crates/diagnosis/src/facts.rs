@@ -9,7 +9,7 @@ use crate::location::{BandMisfit, Location};
 use crate::mismatch::{BandShare, FrfMismatch};
 use crate::settings::Settings;
 use crate::settings::effects::quantities::DEPARTED;
-use crate::settings::statements::findings::EXCHANGED_WITHIN;
+use crate::settings::statements::findings::{EXCHANGED_WITHIN, LEAST_BY_CHANCE};
 use crate::settings::statements::residuals::{NOT_WHITE, UNEVEN};
 use crate::settings::statements::variation::{
     FEWEST_LINES, KNOWN, LEAST_VARIANCE, NO_POWER, ONE_PART, ONE_PHASE,
@@ -107,6 +107,15 @@ impl Diagnosis {
     /// no law, are what there is to see.
     pub fn is_unnamed(&self) -> bool {
         self.findings.iter().all(Finding::is_doubtful)
+    }
+
+    /// What came nearest to a finding where nothing is needed, and the share of tests in which one of all names does as well by chance, if that is little: a Bayes factor of b or more has
+    /// under the null hypothesis a probability of 1/b at the most (Markov's inequality), for each of the names.
+    pub fn nearest_by_chance(&self) -> Option<(&Tried, f64)> {
+        let consistent = self.verdict == Verdict::Consistent;
+        let nearest = self.tried.first().filter(|_| consistent)?;
+        let by_chance = self.search.candidates.len() as f64 * (-nearest.ln_gain).exp();
+        (by_chance < LEAST_BY_CHANCE).then_some((nearest, by_chance))
     }
 
     /// What was tried where nothing explains the recording, the nearest first; empty where something does.

@@ -26,10 +26,10 @@
 //! * [`extended`]: fits of what a search has, with one effect more or with fewer;
 //! * [`search`]: every candidate, alone and beside others;
 //! * [`compared`]: a fixture compared with a recording, or with what has changed;
-//! * [`judgement`]: what it comes to: names with their probabilities and intervals, and errors;
-//! * [`judge`]: the decision for that;
+//! * [`judgement`]: the outcome: names with their probabilities and intervals, and errors;
+//! * [`judge`]: verdict, probabilities and errors;
 //! * [`places`]: where along its body a finding may sit;
-//! * [`beside_lines`]: what it leaves to the lines;
+//! * [`beside_lines`]: what modes leave to the lines;
 //! * [`predicting`]: models that are to predict where nobody measured;
 //! * [`uncertainty`]: what errors of the model leave uncertain of what lines have found.
 

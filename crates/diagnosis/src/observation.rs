@@ -1,3 +1,5 @@
+//! What a diagnosis rests on: FRFs with the weight of each value, the lines in use, the work done so far.
+
 use crate::recorded_lines::{drift_variance, lines_in_use};
 use crate::settings::lines::noise::{COHERENCE_UNCERTAINTY, LEVEL_SHARE, LEVEL_WINDOW, SCATTER_UNCERTAINTY};
 use crate::work::Work;

@@ -17,7 +17,7 @@ use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_spectra::SpectraError;
 
-/// Names of what a search may not come to any more.
+/// What a search that runs out of work leaves out, as `stopped` says it.
 const UNSEEN: &str = "the judgement on what is held out";
 const PLACES: &str = "the places of what is left";
 
@@ -116,8 +116,8 @@ fn from_modes<'a>(fitter: &Fitter, within: &Search, modal: &'a ModalJudgement) -
     let explained = searched.as_ref().is_some_and(|search| explains(fitter, &search.repaired, true));
     // Modes that need no error of the model, or that do not tell all there is, beside lines that are not explained: it is not the modes of the model that
     // are in error.
-    let told = !modal.tells_little(fitter) || modal.has_no_rival(fitter);
-    let not_in_error = modal.search.best.exact || modal.has_right_modes() || !told;
+    let tells_all = !modal.is_incomplete_but_usable(fitter) || modal.has_no_rival(fitter);
+    let not_in_error = modal.search.best.exact || modal.has_right_modes() || !tells_all;
     if !explained && !not_in_error {
         return None;
     }
@@ -150,7 +150,7 @@ fn as_located(
     if again.verdict == Verdict::Unexplained { parts } else { again }
 }
 
-/// A diagnosis but for what follows from its models and the observation.
+/// What a route decides. `Diagnosis::of_parts` adds what follows from it.
 pub(crate) struct Parts {
     pub verdict: Verdict,
     pub search: Search,

@@ -146,12 +146,12 @@ pub struct SelectionSettings {
     pub wrong: usize,
     /// Penalties that an effect must be worth, faded by a quarter, to be kept without a further fit.
     pub clear: f64,
-    /// Share of all work that a search among the names may take which modes hold most probable but do not explain (two effects in lumped structures took a tenth,
-    /// one a twentieth), and effects at the most: three at once imitate almost anything.
+    /// Share of all work for a search among the names that modes hold most probable where none of them explains the modes (two effects in lumped structures took a tenth, one a twentieth),
+    /// and its effects at the most: three at once imitate almost anything.
     pub among_few: (f64, usize),
     /// Rounds of adding and dropping.
     pub rounds: usize,
-    /// Effects at the most: three at once imitate almost anything.
+    /// Effects at the most: a fourth beside three would fit almost anything.
     pub effects: usize,
     /// Rounds of exchanging each of several effects.
     pub exchanges: usize,
@@ -181,12 +181,12 @@ pub struct ModalSettings {
     pub exchanged: (usize, usize, f64),
     /// How often a fit goes on that came to the end of its start's reach.
     pub farther: usize,
-    /// Starts that are fitted in any case, and how far in ln p the density of another may lie below the best of these fits, if that needs no more than usual errors, to be
-    /// fitted too: a fit seldom gains so much over its start, and e⁻¹⁵⁰ is no probability.
+    /// Starts that are fitted in any case. Of the others one is fitted if its density lies no more than this below the best of those, in ln p, or if that best needs unusual errors: a fit
+    /// seldom gains so much over its start, and e⁻¹⁵⁰ is no probability.
     pub foremost: (usize, f64),
     /// Share of all work done from which on starts are left out so.
     pub costly: f64,
-    /// Share of all work that may be done by then: lines want the rest.
+    /// Share of all work up to which the best names are fitted once more, from further starts: lines want the rest.
     pub again: f64,
     /// Singles that are tried with a second effect, at the most, and ln p below the best from which they are not, nor as look-alikes on lines.
     pub bases: (usize, f64),
@@ -197,7 +197,7 @@ pub struct ModalSettings {
     pub share: f64,
     /// Names that are tried on lines, to see whether one of them leaves no more than noise.
     pub tried: usize,
-    /// Names that are tried where the recording without what is held out is searched, of the most probable of the whole, down to `told` below the best.
+    /// Names that are tried where the recording without what is held out is searched, of the most probable of the whole, down to `no_rival_within` below the best.
     pub blind: usize,
     /// Effects at the most.
     pub effects: usize,
@@ -239,7 +239,7 @@ pub struct ModalSettings {
     /// What each effect beside the first adds to that: pairs of effects can imitate much.
     pub company: f64,
     /// ln p below the best at which a name is not tried on lines, and by which names must stand above nothing where a free fit took all its terms: e⁻⁵⁰ as probable.
-    pub told: f64,
+    pub no_rival_within: f64,
     /// Starts that compare other modes than their base, at the most, beside the best of each candidate.
     pub apart: usize,
     /// Multiple of the usual sizes by which starts are scored that compare other modes than their base.
@@ -296,7 +296,7 @@ impl Default for ModalSettings {
             beside_modes: 0.02,
             unlisted: (-3.5, -0.7),
             company: 1.6,
-            told: 50.0,
+            no_rival_within: 50.0,
             apart: 24,
             wide: 5.0,
             near: 0.7,

@@ -1,3 +1,5 @@
+//! From hits to FRFs, with coherence and variances, and what was left out.
+
 use jointscope_frf::noise::{of_lines, smoothed};
 use jointscope_hits::{Hit, Motion};
 use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet, SpectralLines};

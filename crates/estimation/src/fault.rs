@@ -1,3 +1,5 @@
+//! Why a hit is no good for an FRF.
+
 use std::fmt;
 
 use jointscope_hits::Hit;

@@ -1,3 +1,5 @@
+//! Mass and stiffness of a mesh over its free equations.
+
 use crate::brick::{self, EQUATIONS, NODES, gradient_in_space, shape};
 use crate::{FemError, Mesh, Part};
 use jointscope_linalg::{SparsePattern, SparseSymmetric};

@@ -1,3 +1,5 @@
+//! Meshes of 20-node bricks: blocks, strips and the layers between them.
+
 use crate::brick::{Elasticity, NATURAL, NODES};
 use crate::grading::{Ends, distinct, divide};
 use crate::{FemError, MeshOptions};

@@ -1,3 +1,5 @@
+//! FRFs of a solid by the superposition of its modes, with what effects attach to it.
+
 use crate::FemError;
 use crate::twin::{ModeKind, Twin, read};
 use jointscope_damping::{DampingLaw, ModeDamping};

@@ -1,3 +1,5 @@
+//! A fixture as a deformable solid: its mesh, matrices and lowest modes.
+
 use crate::assembly::Matrices;
 use crate::{FemError, Mesh, MeshOptions, Part};
 use jointscope_fixture::{BodyKind, Fixture};

@@ -1,3 +1,5 @@
+//! Deflection and rotation of a rigid block from its sensors, and force and moment from its hits (equations 19 to 23).
+
 use jointscope_linalg::{ComplexMatrix2, LeastSquares, LeastSquaresError, Matrix2};
 use jointscope_spectra::{Dof, FrfForm, FrfSet, SpectraError, SpectralLines};
 use num_complex::Complex64;

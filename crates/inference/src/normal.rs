@@ -1,3 +1,5 @@
+//! Normal equations of a weighted least-squares problem with priors, and the damped, bounded steps that they ask for.
+
 use crate::{Covariance, Parameter, weighted_products};
 use jointscope_linalg::{Cholesky, solve_positive_definite};
 use num_complex::Complex64;

@@ -1,3 +1,5 @@
+//! The contents of `diagnosis.json`.
+
 use crate::file::{value, with_sentence};
 use jointscope_diagnosis::{
     Departure, Diagnosis, EndErrors, Finding, FrfMismatch, HeldOut, Hypothesis, LawFit, LineEstimate,

@@ -1,4 +1,4 @@
-//! How stiff and how damped a welded, glued or bolted joint is, from hammer tests on two blocks.
+//! What a model of an assembly leaves out, and how stiff and damped its joints are, from hammer tests.
 //!
 //! This crate is the short way to what its parts do at length. A [`Fixture`] says what is believed about the assembly, a
 //! recording holds the FRFs between its points, and [`Analysis`] finds the joint between them:
@@ -63,7 +63,7 @@
 //!
 //! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`import`], [`recordings`],
 //! [`fixture`], [`schema`], [`draft`], [`spectra`], [`frf`], [`hits`], [`estimation`], [`beam`], [`damping`], [`lumped`], [`modes`], [`averaging`],
-//! [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`plan`], [`check`], [`cases`], [`fem`], [`comparison`], [`export`], [`tables`], [`rig`], [`proof`], [`report`].
+//! [`linalg`], [`screening`], [`wording`], [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`plan`], [`check`], [`cases`], [`fem`], [`comparison`], [`export`], [`tables`], [`rig`], [`proof`], [`report`].
 
 pub use jointscope_averaging as averaging;
 pub use jointscope_beam as beam;

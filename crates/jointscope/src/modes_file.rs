@@ -1,3 +1,5 @@
+//! The contents of `modes.json`.
+
 use crate::file::value;
 use jointscope_frf::noise::NoiseSource;
 use jointscope_modes::{ChartPole, ModalAnalysis, Mode, Stability};

@@ -1,3 +1,5 @@
+//! The contents of `stiffness.json`.
+
 mod across;
 mod by_line;
 mod from_all_frfs;

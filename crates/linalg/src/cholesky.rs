@@ -1,3 +1,5 @@
+//! Cholesky factors of symmetric positive matrices, scaled to a unit diagonal first.
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltRegularization, cholesky_in_place, cholesky_in_place_scratch};
 use faer::{MatMut, Par, Spec};

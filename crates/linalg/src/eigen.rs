@@ -1,3 +1,5 @@
+//! All modes of a symmetric pair of stiffness and mass, normalised to the mass.
+
 use faer::{Mat, Side};
 
 use crate::few_coordinates::{self, FEW};

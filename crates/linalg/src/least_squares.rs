@@ -1,3 +1,5 @@
+//! Linear least-squares problems of one spectral line, by Householder reflections.
+
 use num_complex::Complex64;
 
 /// Why a least-squares problem has no single answer.

@@ -1,3 +1,5 @@
+//! 2×2 matrices of numbers, or of the numbers of several spectral lines side by side.
+
 use num_complex::Complex64;
 use serde::Serialize;
 use std::ops::{Add, Div, Mul, Neg, Sub};

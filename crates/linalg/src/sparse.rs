@@ -1,3 +1,5 @@
+//! Sparse symmetric matrices, ordered and factorised by faer.
+
 use std::sync::Arc;
 
 /// Why a sparse matrix cannot be built or factorised.

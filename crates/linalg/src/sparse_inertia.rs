@@ -1,3 +1,5 @@
+//! How many eigenvalues lie below a number: by the signs of a factor (Sylvester).
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::IntranodeLbltRef;

@@ -1,3 +1,5 @@
+//! An assembly with its effects: modes, participations, and the low-rank terms that are added line by line.
+
 mod change;
 
 use crate::assembly::Rows;

@@ -1,3 +1,5 @@
+//! Accelerances of a fixture on spectral lines, as perfect instruments or the stated ones would record them.
+
 use crate::lanes::{Lines, WIDTH};
 use crate::{Instrument, LumpedError, MeasuringChain, Model, Reading, Receptances, Station};
 use jointscope_fixture::Fixture;

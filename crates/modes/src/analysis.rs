@@ -1,3 +1,5 @@
+//! A modal analysis: orders fitted one after the other, stable poles selected, all refined by maximum likelihood.
+
 use jointscope_frf::KnownNoise;
 use jointscope_frf::noise::NoiseSource;
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};

@@ -1,3 +1,5 @@
+//! A mode: natural frequency, damping ratio, shape with deviations; how alike two shapes are.
+
 use jointscope_spectra::{Channel, FrfPair};
 use num_complex::Complex64;
 use std::f64::consts::TAU;

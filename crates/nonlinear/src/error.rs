@@ -1,3 +1,5 @@
+//! Why motion over time cannot be computed, or a law not identified.
+
 use crate::settings::levels::{FEWEST_LINES, LEAST_RATIO};
 use jointscope_hits::HitError;
 use jointscope_lumped::LumpedError;

@@ -166,7 +166,7 @@ pub(crate) fn remarks(suggestions: &[Suggestion], inflation: f64, with_model_err
     let any = |holds: fn(&Measure) -> bool| suggestions.iter().any(|suggestion| holds(&suggestion.action));
     if any(Measure::changes_the_structure) {
         all.push(
-            "With a mass, or off its supports, the structure is another one: state that in a copy of the fixture, under physics or supports, and give both tests together with --also"
+            "With a mass, or off its supports, the structure is another one: state that in a copy of the fixture, under physics or supports, and give both tests together with --second-test"
                 .to_owned(),
         );
     }

@@ -1,3 +1,5 @@
+//! Which channel of a file stands for which point of a fixture: by names, by nodes, by what the user says.
+
 use std::fmt;
 
 use jointscope_spectra::{Channel, Dof};

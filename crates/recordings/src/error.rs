@@ -1,3 +1,5 @@
+//! Why datasets make no recording: the place in which file, and the remedy.
+
 use std::fmt;
 
 use jointscope_spectra::{Channel, SpectraError};

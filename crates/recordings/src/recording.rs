@@ -1,3 +1,5 @@
+//! The datasets of a test as FRFs between a fixture's points, or as hits, or as levels.
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use jointscope_fixture::Fixture;

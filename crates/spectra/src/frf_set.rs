@@ -1,3 +1,5 @@
+//! FRFs of one test on common lines: channels, pairs of them, values FRF after FRF, variances.
+
 use crate::{FrfForm, SpectraError, SpectralLines};
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize, Serializer};

@@ -182,21 +182,16 @@ fn of_noise(observation: &Observation) -> Vec<String> {
     remarks
 }
 
-/// What came nearest to a finding where nothing is needed, if a search among as many names comes on something as good in less than every other test: a Bayes
-/// factor of b or more has under the null hypothesis a probability of 1/b at the most (Markov's inequality), for each of the names.
+/// What came nearest to a finding where nothing is needed, if that says anything.
 fn nearest(diagnosis: &Diagnosis) -> Option<String> {
-    let consistent = diagnosis.verdict == Verdict::Consistent;
-    let Tried { effect, ln_gain } = diagnosis.tried.first().filter(|_| consistent)?;
+    let (Tried { effect, .. }, by_chance) = diagnosis.nearest_by_chance()?;
     let names = diagnosis.search.candidates.len();
-    let by_chance = names as f64 * (-ln_gain).exp();
-    (by_chance < 0.5).then(|| {
-        format!(
-            "Nearest to a finding came {}, which is too little to be named: among {names} names one explains as much by chance in up to {} % of tests. If \
-             that may be, test it first: another channel, another sensor, or a quantity known more narrowly would tell.",
-            with_fitted_size(effect),
-            significant(100.0 * by_chance, 2)
-        )
-    })
+    Some(format!(
+        "Nearest to a finding came {}, which is too little to be named: among {names} names one explains as much by chance in up to {} % of tests. If \
+         that may be, test it first: another channel, another sensor, or a quantity known more narrowly would tell.",
+        with_fitted_size(effect),
+        significant(100.0 * by_chance, 2)
+    ))
 }
 
 /// Effects that are told of those that were tried in vain.

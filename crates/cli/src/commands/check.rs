@@ -23,7 +23,7 @@ use crate::refusal::Refusal;
 pub(super) struct CheckArguments {
     /// The fixture file (JSON).
     pub fixture: PathBuf,
-    /// Recordings of it, if there are any (UFF, UNV): all files of one test, in any order.
+    /// Recordings of it, if there are any (UFF, UNV, CSV, MAT): all files of one test, in any order.
     #[arg(value_name = "F.uff")]
     pub files: Vec<PathBuf>,
     #[command(flatten)]

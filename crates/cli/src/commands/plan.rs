@@ -42,8 +42,8 @@ pub(super) struct PlanArguments {
     #[arg(long, value_name = "FROM:TO:STEP", value_parser = spectral_lines, requires = "interval", conflicts_with = "files")]
     pub lines: Option<SpectralLines>,
     /// A further test of the same structure with a mass added or off its supports: the fixture that describes it then, and what was recorded.
-    #[arg(long, num_args = 2, value_names = ["FIXTURE", "G.uff"], conflicts_with = "interval")]
-    pub also: Vec<PathBuf>,
+    #[arg(long, alias = "also", num_args = 2, value_names = ["FIXTURE", "G.uff"], conflicts_with = "interval")]
+    pub second_test: Vec<PathBuf>,
     /// The finding whose names are to be told apart, counted from 1 [default: the one that is named least surely].
     #[arg(long, value_name = "N", conflicts_with = "interval")]
     pub finding: Option<usize>,
@@ -94,7 +94,7 @@ pub(super) fn run(arguments: &PlanArguments, read: ReadDiagnose) -> Result<Strin
         Some(wanted) => for_interval(arguments, wanted)?,
         None => {
             let diagnosed = diagnosed(arguments, read)?;
-            match arguments.also.as_slice() {
+            match arguments.second_test.as_slice() {
                 [state, recording] => return weighed(arguments, &diagnosed, state, recording),
                 _ => between(arguments, diagnosed)?,
             }

@@ -7,7 +7,7 @@ use super::LikelihoodFit;
 use super::data::{Data, lines_of};
 use super::parameters::Parameters;
 use crate::settings::differences::GRADIENT_STEP;
-use crate::{Compliances, JointSpectrum, MeasurementPlan, Sides};
+use crate::{Compliances, CrossingFrfs, JointSpectrum, Sides};
 use jointscope_averaging::Band;
 use jointscope_linalg::{Cholesky, Matrix2, RealMatrix2};
 use jointscope_spectra::FrfSet;
@@ -27,7 +27,7 @@ impl<'a> Optimum<'a> {
     /// `None` where the FRFs leave a combination of the parameters undetermined.
     pub(crate) fn of(
         frfs: &'a FrfSet,
-        (plan, sides): (&MeasurementPlan, &Sides),
+        (plan, sides): (&CrossingFrfs, &Sides),
         spectrum: &JointSpectrum,
         band: Option<Band>,
         fit: &LikelihoodFit,
@@ -45,7 +45,7 @@ impl<'a> Optimum<'a> {
     /// By how much k and c move with sides that differ by a little; `None` where these have no finite response.
     pub(crate) fn moved(
         &self,
-        (plan, sides): (&MeasurementPlan, &Sides),
+        (plan, sides): (&CrossingFrfs, &Sides),
         compliances: &Compliances,
     ) -> Option<(RealMatrix2, RealMatrix2)> {
         let scalar = self.at.scalar;

@@ -36,11 +36,11 @@ impl ModalJudgement {
         let alone = self.search.best.fit.standing.pairing.alone();
         // Records taken one after another, their noise told by scatter alone: an outlier among their gains passes for an error of all gains.
         let unsure = self.is_unexplained() && fitter.observation.has_scatter_for_noise();
-        let told = self.free_fit <= fitter.settings.modal.hopeless;
+        let has_poles = self.free_fit <= fitter.settings.modal.hopeless;
         // Errors of gains may be of any size among modes, one channel's gain for instance, which then is held against itself.
         let gain = self.search.best.fit.evidence.sizes.gain > BEYOND_ERRORS * self.features.known.scales.gain;
-        let told_otherwise = || alone != 0.0 || unsure || gain || self.is_beyond_errors(fitter);
-        self.tells_little(fitter) || (told && told_otherwise())
+        let is_doubted = || alone != 0.0 || unsure || gain || self.is_beyond_errors(fitter);
+        self.is_incomplete_but_usable(fitter) || (has_poles && is_doubted())
     }
 
     /// Whether errors of a structure's model, however large, leave more than noise: a sensor that loads some FRFs and others not gives these other poles, which no hypothesis without it
@@ -58,8 +58,8 @@ impl ModalJudgement {
         self.errors[1].is_none() && !self.states_gain
     }
 
-    /// Whether modes tell a part of the recording only.
-    pub(crate) fn tells_little(&self, fitter: &Fitter) -> bool {
+    /// Whether modes tell a part of the recording only, but not where no poles explain it at all.
+    pub(crate) fn is_incomplete_but_usable(&self, fitter: &Fitter) -> bool {
         let ModalSettings { free_fit, hopeless, .. } = fitter.settings.modal;
         (self.free_fit > free_fit || self.strained) && self.free_fit <= hopeless
     }
@@ -71,13 +71,13 @@ impl ModalJudgement {
 
     /// Whether modes are far less probable without any of the names, at least in part explained by them, and by no others nearly as well.
     pub(crate) fn has_no_rival(&self, fitter: &Fitter) -> bool {
-        let ModalSettings { free_fit, told, .. } = fitter.settings.modal;
+        let ModalSettings { free_fit, no_rival_within, .. } = fitter.settings.modal;
         let best = &self.search.best;
         let alone = |index: usize| {
             let others = self.search.alternatives[index]
                 .iter()
                 .filter(|other| other.names.last() != Some(&best.names[index]));
-            others.count() == 0 && best.fit.ln - self.search.without[index] > told
+            others.count() == 0 && best.fit.ln - self.search.without[index] > no_rival_within
         };
         !best.names.is_empty() && self.free_fit <= free_fit && (0..best.names.len()).all(alone)
     }
@@ -93,7 +93,7 @@ impl ModalJudgement {
         let by_lines = self.is_unexplained() || self.is_dubious(fitter) || self.has_right_modes();
         // What modes tell from the best is no better on lines.
         let best = self.search.best.fit.ln;
-        let close = |named: &&Named| best - named.fit.ln < fitter.settings.modal.told;
+        let close = |named: &&Named| best - named.fit.ln < fitter.settings.modal.no_rival_within;
         let singles = self.search.singles.iter().take(fitter.settings.modal.tried);
         let all = singles.chain(&self.search.more).filter(close).chain([&self.search.best]);
         let odds = fitter.settings.modal.odds;
@@ -121,9 +121,9 @@ impl ModalJudgement {
             named.names.len() == effects.len() && named.names.iter().zip(&effects).all(same)
         };
         let fitted = self.search.singles.iter().chain(&self.search.more).find(is_other);
-        let told = fitter.settings.modal.odds.ln();
-        let is_told = fitted.is_some_and(|other| other.names != *names && fit.ln - other.fit.ln > told);
-        *exact && is_told && self.nearly_exact(fitter).is_some()
+        let needed = fitter.settings.modal.odds.ln();
+        let is_clear = fitted.is_some_and(|other| other.names != *names && fit.ln - other.fit.ln > needed);
+        *exact && is_clear && self.nearly_exact(fitter).is_some()
     }
 
     /// The findings of the lines; beside one alone the one name that the modes hold more probable, where errors of the model as usual leave them so. Each is as probable as the
@@ -133,7 +133,7 @@ impl ModalJudgement {
         let ([own], [finding]) = (&effects[..], &mut findings[..]) else { return findings };
         let named = |effect: &Effect| effect.is_named_as(own);
         let is_listed = finding.alternatives.iter().any(|(effect, _)| named(effect));
-        let little = self.features.tells_little(&fitter.settings.modal);
+        let little = self.features.is_incomplete(&fitter.settings.modal);
         // Without any error of the model lines are right to tell the two apart.
         let may_err = !self.search.best.exact;
         if !(self.names_all() && may_err) || little || named(&finding.effect) || is_listed {

@@ -62,7 +62,7 @@ impl Features {
     }
 
     /// Whether the modes tell a part of the recording only.
-    pub(crate) fn tells_little(&self, settings: &ModalSettings) -> bool {
+    pub(crate) fn is_incomplete(&self, settings: &ModalSettings) -> bool {
         self.recorded.chi2_per_dof > settings.free_fit || self.recorded.is_strained()
     }
 }

@@ -98,7 +98,7 @@ impl ModalJudgement {
     /// What was found, and the most probable effects by themselves: what a search of a part of the recording may choose from.
     pub(crate) fn known(&self, settings: &ModalSettings) -> Known {
         let singles = &self.search.singles;
-        let least = singles.first().map_or(0.0, |first| first.fit.ln) - settings.told;
+        let least = singles.first().map_or(0.0, |first| first.fit.ln) - settings.no_rival_within;
         let probable = singles.iter().take(settings.blind).filter(|single| single.fit.ln >= least);
         Known {
             found: self.search.best.fit.hypothesis.effects(),
@@ -132,19 +132,19 @@ impl ModalJudgement {
         Search { nominal, refitted, repaired, ..within.clone() }
     }
 
-    /// Candidates that modes tell from the one effect of `hypothesis`, each fitted to them by itself, by more than `told` in ln p, or not even fitted, so far below
+    /// Candidates that modes tell from the one effect of `hypothesis`, each fitted to them by itself, by more than `needed` in ln p, or not even fitted, so far below
     /// did it start.
     pub(crate) fn told_from(
         &self,
         hypothesis: &Hypothesis,
         candidates: &[Candidate],
-        told: f64,
+        needed: f64,
     ) -> Vec<usize> {
         let [effect] = &hypothesis.effects()[..] else { return Vec::new() };
         let of = |named: &&Named| named.names.iter().any(|&c| candidates[c].names(effect));
         let Some(own) = self.search.singles.iter().find(of) else { return Vec::new() };
-        let told = |named: &&Named| own.fit.ln - named.fit.ln > told;
-        let fitted = self.search.singles.iter().filter(told).flat_map(|named| named.names.clone());
+        let is_told = |named: &&Named| own.fit.ln - named.fit.ln > needed;
+        let fitted = self.search.singles.iter().filter(is_told).flat_map(|named| named.names.clone());
         // What is far below the best is told from what comes first, not from any other.
         let first = self.search.singles.first().is_some_and(|first| first.names == own.names);
         let far = self.search.far.iter().copied().filter(|_| first);

@@ -44,7 +44,7 @@ pub(crate) fn without_imitations(
             &anew
         }
     };
-    if features.tells_little(settings) || explains_more_than_errors(fitter, search, features) {
+    if features.is_incomplete(settings) || explains_more_than_errors(fitter, search, features) {
         return None;
     }
     let mut repaired = search.repaired.clone();

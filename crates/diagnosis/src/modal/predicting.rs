@@ -49,7 +49,7 @@ impl ModalJudgement {
         let Search { refitted, repaired, .. } = search;
         let leaves =
             repaired.chi2_per_dof(fitter.observation) > slight && repaired.chi2 > untold * refitted.chi2;
-        leaves && !self.since_baseline && (self.tells_little(fitter) || self.has_no_peak())
+        leaves && !self.since_baseline && (self.is_incomplete_but_usable(fitter) || self.has_no_peak())
     }
 
     /// Whether something is recorded beside the modes of the model that is as wide as no mode of a structure.

@@ -11,7 +11,7 @@ use crate::{Hypothesis, Watch};
 use jointscope_fixture::Effect;
 use jointscope_model_error::ErrorSizes;
 
-/// Name of what a search may not come to any more.
+/// What a search that runs out of work leaves out, as `stopped` says it.
 pub(super) const STARTS: &str = "the less promising effects, by modes";
 
 /// Effects by their candidates' indices, and their fit.

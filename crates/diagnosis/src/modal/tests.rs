@@ -1,3 +1,5 @@
+//! What a comparison by modes comes to, on simulated structures.
+
 mod every_joint;
 mod phases;
 mod search;

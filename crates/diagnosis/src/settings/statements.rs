@@ -10,6 +10,8 @@ pub(crate) mod baseline {
 pub(crate) mod findings {
     /// Share of a finding's probability from which another place of it is to be reckoned with.
     pub(crate) const LIKELY_SHARE: f64 = 0.05;
+    /// Share of tests in which chance does as well, from which on the name that came nearest to a finding is not told.
+    pub(crate) const LEAST_BY_CHANCE: f64 = 0.5;
     /// How close to the other point an offset must lead, as a share of the distance between the two, for two points to have been taken for each other.
     pub(crate) const EXCHANGED_WITHIN: f64 = 0.1;
 }

@@ -1,3 +1,5 @@
+//! The laboratory's structure as matrices: laws between stations, put together by motion.
+
 use super::{Row, Station};
 use num_complex::Complex64;
 

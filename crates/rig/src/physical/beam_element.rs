@@ -1,3 +1,5 @@
+//! The laboratory's beams: stiffness and mass of an element.
+
 use super::{Assembly, Law, Row, Station};
 use crate::StructureError;
 

@@ -1,3 +1,5 @@
+//! The laboratory's bodies: rigid blocks and meshed beams, with their stations.
+
 use super::bar_mode::{BodyMode, Order, UniformBar};
 use super::{Assembly, BeamElement, Law, Station};
 use crate::StructureError;

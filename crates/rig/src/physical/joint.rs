@@ -1,3 +1,5 @@
+//! The laboratory's joints: what effects and damping make of a stated law, interfaces at both ends.
+
 use super::body::Bodies;
 use super::{Assembly, BeamElement, Law, Row, Station};
 use crate::StructureError;

@@ -1,3 +1,5 @@
+//! The laboratory's structure as it is tested: its FRFs between stations.
+
 use super::bar_mode::BodyMode;
 use super::body::Bodies;
 use super::damping::{add_viscous, loss_factor};
