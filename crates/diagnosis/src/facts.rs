@@ -7,9 +7,11 @@ use crate::finding::{Finding, Tried};
 use crate::fit::Fit;
 use crate::location::{BandMisfit, Location};
 use crate::mismatch::{BandShare, FrfMismatch};
+use crate::odd_record::{OddRecord, odd_record};
 use crate::settings::Settings;
 use crate::settings::effects::quantities::DEPARTED;
 use crate::settings::statements::findings::{EXCHANGED_WITHIN, LEAST_BY_CHANCE};
+use crate::settings::statements::odd_record::LEFT;
 use crate::settings::statements::residuals::{NOT_WHITE, UNEVEN};
 use crate::settings::statements::variation::{
     FEWEST_LINES, KNOWN, LEAST_VARIANCE, NO_POWER, ONE_PART, ONE_PHASE,
@@ -116,6 +118,13 @@ impl Diagnosis {
         let nearest = self.tried.first().filter(|_| consistent)?;
         let by_chance = self.search.candidates.len() as f64 * (-nearest.ln_gain).exp();
         (by_chance < LEAST_BY_CHANCE).then_some((nearest, by_chance))
+    }
+
+    /// The one record that is another multiple of what the fixture makes of it than the others, where what was found leaves much of the FRFs.
+    pub fn odd_record(&self) -> Option<OddRecord> {
+        let [_, missed, misses] = self.nrmse();
+        let is_missed = self.verdict != Verdict::Consistent && misses > LEFT * missed;
+        is_missed.then(|| odd_record(&self.observation, &self.search.nominal.predicted)).flatten()
     }
 
     /// What was tried where nothing explains the recording, the nearest first; empty where something does.

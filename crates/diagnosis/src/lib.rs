@@ -58,6 +58,7 @@ mod mismatch;
 mod modal;
 mod named;
 mod observation;
+mod odd_record;
 mod options;
 mod parameter_transforms;
 mod penalty;
@@ -97,6 +98,7 @@ pub use location::{BandMisfit, LawFit, LawParameter, LineEstimate, Location, Sit
 pub use mismatch::{BandShare, FrfMismatch};
 pub use modal::{ErrorIntervals, ModelError};
 pub use observation::Observation;
+pub use odd_record::OddRecord;
 pub use options::{DiagnosisError, DiagnosisOptions};
 pub use prediction::PredictionError;
 pub use search::Search;

@@ -7,7 +7,7 @@ use crate::misfit::{sits, varies};
 use crate::numbers::{apart, figures, listed, significant};
 use crate::places::quantity_name;
 use crate::{Remarks, Says, model_error};
-use jointscope_diagnosis::{Diagnosis, Observation, Tried};
+use jointscope_diagnosis::{Diagnosis, Observation, OddRecord, Tried};
 use jointscope_findings::Verdict;
 use jointscope_frf::noise::NoiseSource;
 
@@ -142,6 +142,15 @@ impl Remarks for Diagnosis {
                 listed(&names)
             ));
         }
+        remarks.extend(self.odd_record().map(|OddRecord { frf, factor, others: [least, largest] }| {
+            format!(
+                "FRF {frf} is {} times what the fixture makes of it, the others {} to {} times: look at its unit, range and sign. Where the gain of each record is unsure, state so \
+                 (`channels`, `\"*\"`), and the odd one is named.",
+                significant(factor, 3),
+                significant(least, 3),
+                significant(largest, 3)
+            )
+        }));
         remarks.extend(nearest(self));
         remarks.extend(of_observation(&self.observation));
         // Among modes correlation is a part of the likelihood.

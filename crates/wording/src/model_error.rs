@@ -188,7 +188,7 @@ fn excess(diagnosis: &Diagnosis, error: &ModelError) -> String {
         (false, _) => format!("larger than {than} {}", listed(&told)),
         (true, true) => "not larger than usual, but for the departure".to_owned(),
         (true, false) => {
-            "larger than usual in mass lines, upper residuals or phases, not in the modes themselves"
+            "larger than usual in gains of records, mass lines, upper residuals or phases, not in the modes themselves"
                 .to_owned()
         }
     }
@@ -380,7 +380,11 @@ mod tests {
             &["χ²"],
         );
         let usual = error(0.001, 0.0, 0.001);
-        says(&judged(Verdict::Unexplained, usual, usual), &["in mass lines, upper residuals or phases"], &[]);
+        says(
+            &judged(Verdict::Unexplained, usual, usual),
+            &["in gains of records, mass lines, upper residuals or phases"],
+            &[],
+        );
     }
 
     #[test]

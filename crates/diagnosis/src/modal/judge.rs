@@ -8,6 +8,7 @@ use crate::modal::judgement::ModalJudgement;
 use crate::modal::places::Places;
 use crate::modal::search::ModalSearch;
 use crate::modal::searcher::{Named, Searcher};
+use crate::settings::modal::sizes::BEYOND_ERRORS;
 use jointscope_findings::Verdict;
 use jointscope_fixture::Entry;
 
@@ -95,9 +96,11 @@ impl Judge<'_> {
                 || all(&best.fit) < part * all(none)
                 || modes(&best.fit) < part * modes(none) && model(&best.fit) < model(none)
         };
+        // Gains of records may be off by anything beside a name. By themselves they are what is left out.
+        let gains = best.fit.evidence.sizes.gain > BEYOND_ERRORS * self.searcher.problem.sizes.gain;
         match (best.names.is_empty(), adequate) {
-            (true, true) => Verdict::Consistent,
-            (true, false) => Verdict::Unexplained,
+            (true, true) if !gains => Verdict::Consistent,
+            (true, _) => Verdict::Unexplained,
             (false, true) => Verdict::Explained,
             (false, false) if in_part() => Verdict::PartlyExplained,
             (false, false) => Verdict::Unexplained,

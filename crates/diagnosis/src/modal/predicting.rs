@@ -36,10 +36,21 @@ impl ModalJudgement {
         if self.verdict == Verdict::PartlyExplained && misses {
             return (self.withdrawn(), Search { repaired: search.refitted.clone(), ..search });
         }
+        if self.verdict == Verdict::Explained && self.spoils_lines(fitter, &search) {
+            return (self.withdrawn(), Search { repaired: search.refitted.clone(), ..search });
+        }
         if self.verdict == Verdict::Explained && self.leaves_untold(fitter, &search) {
             return (self.doubted(), search);
         }
         (self.clone(), search)
+    }
+
+    /// Whether lines miss far more with what explains the modes than without: gains of all records, which may be off by anything among modes, make up for a gain that is none.
+    fn spoils_lines(&self, fitter: &Fitter, search: &Search) -> bool {
+        let spoils = fitter.settings.modal.spoils;
+        let Search { refitted, repaired, .. } = search;
+        let [missed, misses] = [refitted, repaired].map(|fit| fitter.observation.nrmse(&fit.predicted));
+        !self.since_baseline && misses > spoils * missed && repaired.chi2 > spoils * spoils * refitted.chi2
     }
 
     /// Whether lines miss much of a recording that modes do not tell: what a free fit took residual terms for passes for errors in what lies outside the band, and what it took a mode for

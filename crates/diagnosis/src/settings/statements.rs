@@ -16,6 +16,18 @@ pub(crate) mod findings {
     pub(crate) const EXCHANGED_WITHIN: f64 = 0.1;
 }
 
+/// A record that is another multiple of what the fixture makes of it than the others.
+pub(crate) mod odd_record {
+    /// Share of what the refitted fixture misses of the FRFs, from which on what was found leaves much.
+    pub(crate) const LEFT: f64 = 0.5;
+    /// Fewest records among which one stands alone.
+    pub(crate) const FEWEST: usize = 3;
+    /// ln of the multiple by which it stands apart from the next, at the least: a tenth is what strikes repeat to.
+    pub(crate) const APART: f64 = 0.1;
+    /// How many times as far as the others from each other.
+    pub(crate) const OTHERS: f64 = 3.0;
+}
+
 /// What the best model leaves.
 pub(crate) mod residuals {
     /// Correlation of neighbouring lines from which residuals are not called white.
