@@ -178,7 +178,7 @@ fn by_its_law<'a>(
         return None;
     }
     let known = heavy.filter(|_| is_viscous);
-    let fitted = problem.fit(at, None).into_iter().chain(known).reduce(lower)?;
+    let fitted = problem.fit(at, None).into_iter().chain(known).reduce(lower)?.or_from_afar(&problem)?;
     let (fitted, free) = admissible::settled(&problem, fitted)?;
     fitted.equations(&problem).covariance()?;
     Some((problem, fitted, free))

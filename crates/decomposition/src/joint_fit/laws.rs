@@ -205,16 +205,14 @@ fn without_mass(viscous: &Problem, first: &Fitted) -> Vec<Candidate> {
         all.extend(candidate.map(|candidate| (candidate, fitted)));
     }
     let nearest = most_evidence(all.iter().map(|(candidate, _)| candidate));
-    for (candidate, fitted) in &mut all {
+    let closely = |(candidate, fitted): (Candidate, Fitted)| {
         if nearest - candidate.evidence > NEAR_LOG_EVIDENCE {
-            continue;
+            return candidate;
         }
         let problem = Problem::lawful(viscous.test, vec![candidate.fit.law], None);
-        if let Some(better) = Candidate::converged(&problem, fitted) {
-            *candidate = better;
-        }
-    }
-    let mut all: Vec<Candidate> = all.into_iter().map(|(candidate, _)| candidate).collect();
+        Candidate::converged(&problem, fitted).unwrap_or(candidate)
+    };
+    let mut all: Vec<Candidate> = all.into_iter().map(closely).collect();
     all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     all
 }
@@ -242,9 +240,10 @@ fn with_mass(
                 start
             }
         };
-        let mut fitted = problem.fit_within(start, None, MOST_STEPS)?;
-        let candidate = Candidate::converged(&problem, &mut fitted)?;
-        Some((candidate, light.fit.objective - fitted.point.objective))
+        let fitted = problem.fit_within(start, None, MOST_STEPS)?;
+        let candidate = Candidate::converged(&problem, fitted)?;
+        let gain = light.fit.objective - candidate.fit.objective;
+        Some((candidate, gain))
     };
     let nearest = most_evidence(light.iter());
     let (mut heavy, mut most): (Vec<Candidate>, f64) = (Vec::new(), 0.0);
@@ -296,9 +295,8 @@ fn variances(parameters: &[Parameter]) -> Vec<f64> {
 impl Candidate {
     /// The law of the one joint, its fit gone on with until it has converged by derivatives taken there: evidence is of optima, and one that is missed by ten in χ² decides
     /// between laws.
-    fn converged(problem: &Problem, fitted: &mut Fitted) -> Option<Self> {
-        fitted.refresh(problem)?;
-        Candidate::of(problem, fitted, 0)
+    fn converged(problem: &Problem, fitted: Fitted) -> Option<Self> {
+        Candidate::of(problem, &fitted.or_from_afar(problem)?, 0)
     }
 
     /// A joint's law at the optimum of all; `None` where that is not determined.
