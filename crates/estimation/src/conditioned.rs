@@ -23,6 +23,17 @@ pub(crate) struct Conditioned<'a> {
     pub force_drift: Drift,
 }
 
+/// The same hit with the baselines of its signals off, as the estimate takes them: for whatever else is made of hits.
+pub fn without_baselines(hit: &Hit, baseline: Baseline) -> Hit {
+    let Conditioned { force, responses, .. } = Conditioned::of(hit, baseline);
+    let responses =
+        responses.into_iter().map(|signal| Response { values: signal.values, ..signal.response.clone() });
+    let own = (hit.number(), hit.interval(), hit.start());
+    // As many finite values as before.
+    Hit::new(own.0, own.1, own.2, hit.struck().clone(), force, responses.collect())
+        .unwrap_or_else(|_| hit.clone())
+}
+
 /// One response of a hit without its baseline.
 #[derive(Debug, Clone)]
 pub(crate) struct Signal<'a> {

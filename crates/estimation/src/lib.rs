@@ -50,6 +50,7 @@ mod remarks;
 mod report;
 mod settings;
 
+pub use conditioned::without_baselines;
 pub use error::EstimateError;
 pub use estimate::Estimate;
 pub use fault::{Fault, Signal};

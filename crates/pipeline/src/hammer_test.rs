@@ -1,6 +1,8 @@
 //! Hammer hits with the FRFs estimated from them.
 
-use jointscope_estimation::{Estimate, EstimateError, EstimateOptions, Estimator};
+use jointscope_estimation::{
+    Baseline, Estimate, EstimateError, EstimateOptions, Estimator, without_baselines,
+};
 use jointscope_hits::Hit;
 use jointscope_spectra::{FrfSet, in_text};
 
@@ -11,6 +13,8 @@ pub struct HammerTest {
     pub hits: Vec<Hit>,
     /// FRFs, and what became of each hit.
     pub estimate: Estimate,
+    /// What was taken off every signal.
+    baseline: Baseline,
 }
 
 impl HammerTest {
@@ -19,13 +23,14 @@ impl HammerTest {
     /// # Errors
     /// See [`EstimateError`].
     pub fn of(hits: &[Hit], options: &EstimateOptions) -> Result<Self, EstimateError> {
-        Ok(HammerTest { hits: hits.to_vec(), estimate: Estimate::of(hits, options)? })
+        let estimate = Estimate::of(hits, options)?;
+        Ok(HammerTest { hits: hits.to_vec(), estimate, baseline: options.baseline })
     }
 
-    /// The hits that the estimate uses.
+    /// The hits that the estimate uses, without their baselines: an offset that differs from hit to hit changes FRFs of single hits under a window, as no law of a joint does.
     pub(crate) fn hits_in_use(&self) -> Vec<Hit> {
         let in_use = self.hits.iter().zip(&self.estimate.hits).filter(|(_, report)| report.used);
-        in_use.map(|(hit, _)| hit.clone()).collect()
+        in_use.map(|(hit, _)| without_baselines(hit, self.baseline)).collect()
     }
 
     /// `FRFs were estimated from the hits: H1, 9 hits at 1, 9 at 2, on 1975 lines from 0.78125 to 1543 Hz`, of those FRFs that are used.

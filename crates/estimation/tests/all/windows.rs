@@ -1,7 +1,9 @@
 //! Windows, record lengths and what sensors measure.
 
 use crate::common::{INTERVAL, TWO_MODES, Test, hit, pulse};
-use jointscope_estimation::{Estimate, EstimateOptions, ForceWindow, Remark, ResponseWindow};
+use jointscope_estimation::{
+    Baseline, Estimate, EstimateOptions, ForceWindow, Remark, ResponseWindow, without_baselines,
+};
 use jointscope_hits::{Hit, Motion, Response};
 use jointscope_spectra::{Channel, FrfSet};
 use proptest::prelude::*;
@@ -145,4 +147,18 @@ fn a_window_on_demand_leaves_no_more_of_a_record_that_ends_nearly_quiet() {
     let found = estimate(&hits, &windowed(ResponseWindow::Auto));
     assert!((1.0..8.0).contains(&found.decay), "{}", found.decay);
     assert!(deviation(&found, found.decay) < 2e-4, "{}", deviation(&found, found.decay));
+}
+
+#[test]
+fn a_hit_without_its_baselines_is_the_same_wherever_amplifiers_rested() {
+    let clean = Test::quiet(1, 4096).hits().remove(0);
+    let moved = |by: f64, values: &[f64]| values.iter().map(|v| v + by).collect::<Vec<f64>>();
+    let resting = |by: f64| hit(7, moved(2.0 * by, clean.force()), moved(-by, &clean.responses()[0].values));
+    let [settled, other] = [0.0, 3.0].map(|by| without_baselines(&resting(by), Baseline::Offset));
+    assert_eq!((other.number(), other.struck()), (7, clean.struck()));
+    let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(apart(settled.force(), other.force()) < 1e-12 * clean.peak_force());
+    assert!(apart(&settled.responses()[0].values, &other.responses()[0].values) < 1e-12 * 100.0);
+    assert!(apart(settled.force(), clean.force()) < 1e-12, "nothing moves before the blow");
+    assert_eq!(without_baselines(&resting(3.0), Baseline::Keep), resting(3.0));
 }
