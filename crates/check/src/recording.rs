@@ -9,7 +9,7 @@ use crate::settings::drawn::ASSUMED_RATIO;
 use crate::settings::frfs::MANY_POOR_LINES;
 use crate::settings::work::MOST_VALUES;
 use crate::{CheckOptions, FrfCheck, MassLine, ModelModes, Remark, Totals, frfs, has_dashpots, mass_line};
-use jointscope_diagnosis::contradictory_lines;
+use jointscope_diagnosis::{OddRecord, contradictory_lines};
 use jointscope_fixture::{Damping, Effect, Fixture, Quantity, RatiosOf};
 use jointscope_frf::noise::with_variances;
 use jointscope_lumped::{Instrument, accelerances};
@@ -87,6 +87,12 @@ impl RecordingCheck {
         let frfs = frfs::of(&measured_frfs, &sources, modelled.as_deref());
         remarks.extend(of_absurd_values(&measured_frfs));
         let channels = channels::of(&frfs, remarks);
+        let odd = modelled
+            .as_deref()
+            .and_then(|all| OddRecord::of(measured_frfs.pairs(), measured_frfs.all_values(), all));
+        // A channel that is turned round is told as one.
+        let odd = odd.filter(|odd| odd.factor > 0.0 || !channels.iter().any(|own| own.turned));
+        remarks.extend(odd.as_ref().map(of_odd_record));
         let driving_points = driving_point::of(&measured_frfs, measured.window_decay);
         remarks.extend(driving_points.iter().filter_map(of_driving_point));
         let reciprocity = reciprocity::of(&measured_frfs);
@@ -201,6 +207,14 @@ impl RecordingCheck {
             ));
         }
     }
+}
+
+fn of_odd_record(odd: &OddRecord) -> Remark {
+    let OddRecord { frf, factor, others: [least, largest] } = odd;
+    let says = format!(
+        "it is {factor:.3} times what the fixture makes of it, the other FRFs {least:.2} to {largest:.2} times: its unit, range or sign"
+    );
+    Remark::odd(frf.to_string(), says)
 }
 
 /// The fixture's FRFs beside measured accelerances, on their channels and lines, as a check draws them: without effects that have none, and with some

@@ -7,7 +7,7 @@ use crate::finding::{Finding, Tried};
 use crate::fit::Fit;
 use crate::location::{BandMisfit, Location};
 use crate::mismatch::{BandShare, FrfMismatch};
-use crate::odd_record::{OddRecord, odd_record};
+use crate::odd_record::OddRecord;
 use crate::settings::Settings;
 use crate::settings::effects::quantities::DEPARTED;
 use crate::settings::statements::findings::{EXCHANGED_WITHIN, LEAST_BY_CHANCE};
@@ -124,7 +124,9 @@ impl Diagnosis {
     pub fn odd_record(&self) -> Option<OddRecord> {
         let [_, missed, misses] = self.nrmse();
         let is_missed = self.verdict != Verdict::Consistent && misses > LEFT * missed;
-        is_missed.then(|| odd_record(&self.observation, &self.search.nominal.predicted)).flatten()
+        let Self { observation, search, .. } = self;
+        let odd = || OddRecord::of(observation.pairs(), observation.values(), &search.nominal.predicted);
+        is_missed.then(odd).flatten()
     }
 
     /// What was tried where nothing explains the recording, the nearest first; empty where something does.

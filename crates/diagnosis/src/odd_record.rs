@@ -1,6 +1,5 @@
 //! One record among several that is another multiple of what the fixture makes of it: its unit, range or sign is wrong, and no place of a structure is.
 
-use crate::Observation;
 use crate::settings::statements::odd_record::{APART, FEWEST, OTHERS};
 use jointscope_spectra::FrfPair;
 use num_complex::Complex64;
@@ -28,33 +27,34 @@ fn multiple(measured: &[Complex64], predicted: &[Complex64]) -> Option<f64> {
     Some(median * in_phase.signum())
 }
 
-/// The record of an observation that stands farther from the others than these from each other, by much.
-pub(crate) fn odd_record(observation: &Observation, predicted: &[Complex64]) -> Option<OddRecord> {
-    let lines = observation.lines().len();
-    let records = observation.values().chunks_exact(lines).zip(predicted.chunks_exact(lines));
-    let multiples: Vec<f64> = records.map(|(m, p)| multiple(m, p)).collect::<Option<_>>()?;
-    if multiples.len() < FEWEST {
-        return None;
-    }
-    let distance = |a: f64, b: f64| if a * b > 0.0 { (a / b).ln().abs() } else { f64::INFINITY };
-    (0..multiples.len()).find_map(|odd| {
-        let others = || (0..multiples.len()).filter(|&at| at != odd).map(|at| multiples[at]);
-        let least = others().fold(f64::INFINITY, f64::min);
-        let largest = others().fold(f64::NEG_INFINITY, f64::max);
-        let apart = distance(multiples[odd], least).min(distance(multiples[odd], largest));
-        let is_odd = least > 0.0 && apart > APART && apart > OTHERS * distance(least, largest);
-        is_odd.then(|| OddRecord {
-            frf: observation.pairs()[odd].clone(),
-            factor: multiples[odd],
-            others: [least, largest],
+impl OddRecord {
+    /// The one of `measured` FRFs between these channels, FRF after FRF, that stands farther from the others than these from each other, by much, beside what is `predicted` of them.
+    pub fn of(pairs: &[FrfPair], measured: &[Complex64], predicted: &[Complex64]) -> Option<Self> {
+        if pairs.len() < FEWEST {
+            return None;
+        }
+        let lines = measured.len() / pairs.len();
+        let records = measured.chunks_exact(lines).zip(predicted.chunks_exact(lines));
+        let multiples: Vec<f64> = records.map(|(m, p)| multiple(m, p)).collect::<Option<_>>()?;
+        let distance = |a: f64, b: f64| if a * b > 0.0 { (a / b).ln().abs() } else { f64::INFINITY };
+        (0..multiples.len()).find_map(|odd| {
+            let others = || (0..multiples.len()).filter(|&at| at != odd).map(|at| multiples[at]);
+            let least = others().fold(f64::INFINITY, f64::min);
+            let largest = others().fold(f64::NEG_INFINITY, f64::max);
+            let apart = distance(multiples[odd], least).min(distance(multiples[odd], largest));
+            let is_odd = least > 0.0 && apart > APART && apart > OTHERS * distance(least, largest);
+            let found =
+                || OddRecord { frf: pairs[odd].clone(), factor: multiples[odd], others: [least, largest] };
+            is_odd.then(found)
         })
-    })
+    }
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::Observation;
     use crate::simulated::simulated;
     use jointscope_fixture::Fixture;
     use jointscope_spectra::SpectralLines;
@@ -76,7 +76,7 @@ mod tests {
             |index: usize, value: Complex64| if index / count == at { value * factor } else { value };
         let frfs = truth.frfs().clone().with_values(values);
         let observation = Observation::new(&frfs, |_| true).unwrap();
-        odd_record(&observation, recorded("2e11").values())
+        OddRecord::of(observation.pairs(), observation.values(), recorded("2e11").values())
     }
 
     #[test]

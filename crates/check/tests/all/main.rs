@@ -172,6 +172,15 @@ fn a_response_that_reads_low_is_named_by_level_and_reciprocity() {
 }
 
 #[test]
+fn one_record_in_g_is_named_beside_the_others() {
+    let fixture = fixture(&[]);
+    let frfs = recorded(&fixture);
+    let is_odd = |pair: &FrfPair| (pair.response.point.as_str(), pair.reference.point.as_str()) == ("3", "2");
+    let in_g = check(&fixture, changed(&frfs, is_odd, |value, _| value / 9.80665));
+    says(&in_g, "3/2", "it is 0.102 times what the fixture makes of it, the other FRFs");
+}
+
+#[test]
 fn a_sensor_beside_the_blow_is_no_driving_point() {
     // The record that is called 4/4 is 4/2's: between some resonances power would come out.
     let fixture = fixture(&[]);
