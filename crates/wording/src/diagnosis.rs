@@ -95,6 +95,15 @@ impl Remarks for Diagnosis {
     fn remarks(&self) -> Vec<String> {
         let mut remarks = Vec::new();
         let pairs = self.observation.pairs();
+        remarks.extend(self.odd_record().map(|OddRecord { frf, factor, others: [least, largest] }| {
+            format!(
+                "FRF {frf} is {} times what the fixture makes of it, the others {} to {} times: look at its unit, range and sign. Where the gain of each record is unsure, state so \
+                 (`channels`, `\"*\"`), and the odd one is named.",
+                significant(factor, 3),
+                significant(least, 3),
+                significant(largest, 3)
+            )
+        }));
         if let [only] = pairs {
             remarks.push(format!(
                 "There is one FRF only, {only}: it shows whether the fixture explains it, and which laws would; it cannot say where \
@@ -142,15 +151,6 @@ impl Remarks for Diagnosis {
                 listed(&names)
             ));
         }
-        remarks.extend(self.odd_record().map(|OddRecord { frf, factor, others: [least, largest] }| {
-            format!(
-                "FRF {frf} is {} times what the fixture makes of it, the others {} to {} times: look at its unit, range and sign. Where the gain of each record is unsure, state so \
-                 (`channels`, `\"*\"`), and the odd one is named.",
-                significant(factor, 3),
-                significant(least, 3),
-                significant(largest, 3)
-            )
-        }));
         remarks.extend(nearest(self));
         remarks.extend(of_observation(&self.observation));
         // Among modes correlation is a part of the likelihood.
