@@ -96,8 +96,9 @@ impl Judge<'_> {
                 || all(&best.fit) < part * all(none)
                 || modes(&best.fit) < part * modes(none) && model(&best.fit) < model(none)
         };
-        // Gains of records may be off by anything beside a name. By themselves they are what is left out.
-        let gains = best.fit.evidence.sizes.gain > BEYOND_ERRORS * self.searcher.problem.sizes.gain;
+        // Gains of records may be off by anything beside a name, and from one test to the next. By themselves they are what is left out.
+        let beyond = best.fit.evidence.sizes.gain > BEYOND_ERRORS * self.searcher.problem.sizes.gain;
+        let gains = beyond && !self.searcher.calibrated;
         match (best.names.is_empty(), adequate) {
             (true, true) if !gains => Verdict::Consistent,
             (true, _) => Verdict::Unexplained,
