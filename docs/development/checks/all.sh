@@ -63,6 +63,7 @@ check "MATLAB files of SciPy and h5py" "numpy scipy h5py cargo" "$python" "$here
 check "export with CalculiX" "ccx" "$python" "$here/export_with_calculix.py" "$program"
 check "the finite-element twin with CalculiX" "ccx" "$python" "$here/fem_with_calculix.py" "$program" ${quick:+"$quick"}
 check "the diagnosis of lumped structures by NumPy" "numpy scipy pyuff" "$python" "$here/lumped_with_numpy.py" "$program" --cases $([ "$long" ] && echo 60 || echo 10)
+check "slips of a test by NumPy" "numpy scipy pyuff" "$python" "$here/slips_with_numpy.py" "$program" --cases $([ "$long" ] && echo 12 || echo 3)
 if [ "$long" ]; then
     check "the diagnosis of solids by CalculiX" "numpy pyuff ccx" "$python" "$here/solids_with_calculix.py" "$program"
     check "the lumped model with the twin" "numpy pyuff" "$python" "$here/sim_against_fem.py" "$program"
