@@ -5,6 +5,13 @@ use crate::settings::exchanged::{FEWEST_LINES, LIKE_FIXTURE, REMAINING_SHARE};
 use jointscope_spectra::{FrfPair, FrfSet};
 use num_complex::Complex64;
 
+/// Median |ln(H/Ĥ)|² over the lines.
+fn distance(recorded: &[Complex64], modelled: &[Complex64]) -> f64 {
+    let pairs = recorded.iter().zip(modelled);
+    let apart = pairs.map(|(a, b)| (a / b).ln().norm_sqr()).filter(|apart| apart.is_finite());
+    median(apart.collect()).unwrap_or(f64::INFINITY)
+}
+
 /// Pairs of FRFs, by place, each of which is like what the fixture makes of the other one, and neither like its own.
 pub(crate) fn exchanged(frfs: &FrfSet, modelled: &[Complex64]) -> Vec<(usize, usize)> {
     let (count, lines) = (frfs.pairs().len(), frfs.lines().len());
@@ -12,10 +19,7 @@ pub(crate) fn exchanged(frfs: &FrfSet, modelled: &[Complex64]) -> Vec<(usize, us
         return Vec::new();
     }
     let distance = |recorded: usize, model: usize| {
-        let pairs = frfs.values(recorded).iter().zip(&modelled[model * lines..(model + 1) * lines]);
-        let apart: Vec<f64> =
-            pairs.map(|(a, b)| (a / b).ln().norm_sqr()).filter(|apart| apart.is_finite()).collect();
-        median(apart).unwrap_or(f64::INFINITY)
+        distance(frfs.values(recorded), &modelled[model * lines..(model + 1) * lines])
     };
     let own: Vec<f64> = (0..count).map(|index| distance(index, index)).collect();
     let mut taken = vec![false; count];
@@ -60,4 +64,43 @@ pub(crate) fn swapped(pairs: &[FrfPair], exchanged: &[(usize, usize)]) -> Option
         }
     }
     None
+}
+
+/// The two points whose channels, all responses or all references of them, have each other's place, with the labels that are right: where some of `exchanged` say so, and the FRFs that have no
+/// partner among the others are like the fixture's by these labels too, which `model` makes.
+pub(crate) fn swapped_throughout(
+    frfs: &FrfSet,
+    modelled: &[Complex64],
+    exchanged: &[(usize, usize)],
+    model: impl Fn(&FrfSet) -> Option<Vec<Complex64>>,
+) -> Option<(String, String, Vec<FrfPair>)> {
+    let (pairs, lines) = (frfs.pairs(), frfs.lines().len());
+    let &(one, other) = exchanged.first()?;
+    [false, true].into_iter().find_map(|is_reference| {
+        let channel =
+            |pair: &FrfPair| if is_reference { pair.reference.clone() } else { pair.response.clone() };
+        let (a, b) = (channel(&pairs[one]), channel(&pairs[other]));
+        let right = |pair: &FrfPair| {
+            let mut right = pair.clone();
+            let own = if is_reference { &mut right.reference } else { &mut right.response };
+            if *own == a {
+                *own = b.clone();
+            } else if *own == b {
+                *own = a.clone();
+            }
+            right
+        };
+        let labels: Vec<FrfPair> = pairs.iter().map(right).collect();
+        let anew = model(&frfs.clone().with_pairs(labels.clone()))?;
+        let moved: Vec<usize> = (0..pairs.len()).filter(|&at| labels[at] != pairs[at]).collect();
+        let sum = |all: &[Complex64]| -> f64 {
+            let of = |&at: &usize| distance(frfs.values(at), &all[at * lines..(at + 1) * lines]);
+            moved.iter().map(of).sum()
+        };
+        let (before, after) = (sum(modelled), sum(&anew));
+        let is_right =
+            a != b && after < REMAINING_SHARE * before && after < LIKE_FIXTURE * moved.len() as f64;
+        let (a, b) = if a <= b { (a, b) } else { (b, a) };
+        is_right.then(|| (a.to_string(), b.to_string(), labels))
+    })
 }

@@ -104,12 +104,18 @@ pub fn screened(frfs: FrfSet, fixture: &Fixture) -> Result<Screened, ScreeningEr
     if let Some(modelled) = &modelled {
         let found = exchanged::exchanged(&frfs, modelled);
         let mut pairs = frfs.pairs().to_vec();
-        match exchanged::swapped(&pairs, &found) {
-            Some((a, b)) => oddities.push(Oddity::Swapped(a, b)),
-            None => oddities
-                .extend(found.iter().map(|&(a, b)| Oddity::Exchanged(pairs[a].clone(), pairs[b].clone()))),
+        let model = |frfs: &FrfSet| self::modelled(frfs, fixture);
+        if let Some((a, b)) = exchanged::swapped(&pairs, &found) {
+            oddities.push(Oddity::Swapped(a, b));
+            found.into_iter().for_each(|(a, b)| pairs.swap(a, b));
+        } else if let Some((a, b, labels)) = exchanged::swapped_throughout(&frfs, modelled, &found, model) {
+            oddities.push(Oddity::Swapped(a, b));
+            pairs = labels;
+        } else {
+            let exchanged = |&(a, b): &(usize, usize)| Oddity::Exchanged(pairs[a].clone(), pairs[b].clone());
+            oddities.extend(found.iter().map(exchanged));
+            found.into_iter().for_each(|(a, b)| pairs.swap(a, b));
         }
-        found.into_iter().for_each(|(a, b)| pairs.swap(a, b));
         frfs = frfs.with_pairs(pairs);
     }
     let unexcited = unexcited::unexcited(&frfs);

@@ -117,6 +117,31 @@ fn two_points_whose_channels_are_swapped_are_told_as_points() {
 }
 
 #[test]
+fn swapped_channels_are_told_where_some_of_their_frfs_have_no_partner() {
+    let all = transverse(&[("4", "1"), ("3", "1"), ("4", "2"), ("3", "2"), ("1", "1"), ("1", "4")]);
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let frfs = synthesize(&fixture(WELD), &all, &lines, Instrument::AsRecorded).unwrap();
+    // The sensors at 1 and 4 under each other's names: 1/2 and 4/4 are of nobody else.
+    let of = |name: &str| if name == "4" { "1" } else { "4" };
+    let labels: Vec<FrfPair> = all
+        .iter()
+        .map(|pair| match pair.response.point.as_str() {
+            "3" => pair.clone(),
+            own => FrfPair::transverse(of(own), &pair.reference.point),
+        })
+        .collect();
+    let (back, found) = oddities(&frfs.clone().with_pairs(labels));
+    assert_eq!(found, [Oddity::Swapped("1".into(), "4".into())]);
+    assert_eq!(back.pairs(), all);
+    // Two FRFs alone are exchanged as before.
+    let mut two = all.clone();
+    two.swap(0, 4);
+    let (back, found) = oddities(&frfs.with_pairs(two));
+    assert!(matches!(&found[..], [Oddity::Exchanged(..)]), "{found:?}");
+    assert_eq!(back.pairs(), all);
+}
+
+#[test]
 fn a_band_without_coherence_is_laid_to_the_hammer_where_all_its_frfs_lack_it_and_to_a_sensor_otherwise() {
     let without = |of: fn(&FrfPair) -> bool| {
         let mut frfs = recorded("");
