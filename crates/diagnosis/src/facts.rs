@@ -123,7 +123,8 @@ impl Diagnosis {
     /// The one record that is another multiple of what the fixture makes of it than the others, where what was found leaves much of the FRFs.
     pub fn odd_record(&self) -> Option<OddRecord> {
         let [_, missed, misses] = self.nrmse();
-        let is_missed = self.verdict != Verdict::Consistent && misses > LEFT * missed;
+        let is_missed =
+            self.verdict != Verdict::Consistent && misses > LEFT * missed && self.baseline.is_none();
         let Self { observation, search, .. } = self;
         let odd = || OddRecord::of(observation.pairs(), observation.values(), &search.nominal.predicted);
         is_missed.then(odd).flatten()

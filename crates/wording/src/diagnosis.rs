@@ -19,8 +19,20 @@ impl Says for Diagnosis {
             None => by_noise(self),
         };
         let drifted = self.drift.as_ref().map_or_else(String::new, |drift| format!("{} ", drift.says()));
-        format!("{drifted}{}{verdict}", departed(self))
+        format!("{drifted}{}{}{verdict}", odd(self).unwrap_or_default(), departed(self))
     }
+}
+
+/// The one record that no place of a structure makes another multiple than the others.
+fn odd(diagnosis: &Diagnosis) -> Option<String> {
+    let OddRecord { frf, factor, others: [least, largest] } = diagnosis.odd_record()?;
+    Some(format!(
+        "FRF {frf} is {} times what the fixture makes of it, the others {} to {} times: look at its unit, range and sign first, or state that the gain of each record is unsure \
+         (`channels`, `\"*\"`), and it is named. ",
+        significant(factor, 3),
+        significant(least, 3),
+        significant(largest, 3)
+    ))
 }
 
 /// The verdict where the noise of the FRFs decides.
@@ -95,15 +107,6 @@ impl Remarks for Diagnosis {
     fn remarks(&self) -> Vec<String> {
         let mut remarks = Vec::new();
         let pairs = self.observation.pairs();
-        remarks.extend(self.odd_record().map(|OddRecord { frf, factor, others: [least, largest] }| {
-            format!(
-                "FRF {frf} is {} times what the fixture makes of it, the others {} to {} times: look at its unit, range and sign. Where the gain of each record is unsure, state so \
-                 (`channels`, `\"*\"`), and the odd one is named.",
-                significant(factor, 3),
-                significant(least, 3),
-                significant(largest, 3)
-            )
-        }));
         if let [only] = pairs {
             remarks.push(format!(
                 "There is one FRF only, {only}: it shows whether the fixture explains it, and which laws would; it cannot say where \

@@ -8,7 +8,7 @@ H1 and coherence of ten blows with 0.3 % noise, or hits over time. Kinds:
 
     null    nothing: `consistent`
     hammer  the hammer strikes 2 to 6 mm beside the sensor at its point, which no listed effect is: nothing with 0.9, and no repaired model that misses twice as much as the refitted one
-    record  one record in g, turned round, or a fifth too small: not `consistent`, and that record named in a remark
+    record  one record in g, turned round, or a fifth too small: not `consistent`, and that record named first
     joint   structural damping of 1 or 2 %, four FRFs: (k - true)/stated deviation of k11, k12, k22
     hits    hits of two strengths whose amplifiers rest elsewhere before each: no change with amplitude
 
@@ -165,7 +165,7 @@ def case(kind, number, seed, program, folder):
     said += f", misses {missed['refitted']:.3f} refitted, {missed['repaired']:.3f} repaired"
     if kind == "hammer":
         return said, all(p < 0.9 for *_, p in names) and missed["repaired"] < 2 * missed["refitted"]
-    named = any("times what the fixture makes of it" in remark and f"{odd[0]}/{odd[1]}" in remark for remark in answer["remarks"])
+    named = f"FRF {odd[0]}/{odd[1]} is" in answer["says"] and "times what the fixture makes of it" in answer["says"]
     # A record that is its reference's only one is that reference.
     alone = any(kind == "channel_gain" and p > 0.9 for kind, _, p in names)
     return said + (", record named" if named else ""), answer["verdict"] != "consistent" and (named or alone)

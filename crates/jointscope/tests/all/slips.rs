@@ -4,7 +4,7 @@ use crate::common::{believed, four_pairs, hammer, measured};
 use crate::model_error::told;
 use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
 use jointscope::fixture::{Dof, Effect, EffectKind, Place};
-use jointscope::{Fixture, FrfPair, FrfSet, SpectralLines};
+use jointscope::{Fixture, FrfPair, FrfSet, Says, SpectralLines};
 use jointscope_rig::HammerTest;
 use num_complex::Complex64;
 
@@ -143,6 +143,16 @@ fn mains_hum_is_left_out_and_nothing_is_named_for_it() {
     assert_eq!(diagnosis.verdict, Verdict::Consistent, "{}", told(&diagnosis));
     let [(from, to)] = diagnosis.contradictory[..] else { panic!("{:?}", diagnosis.contradictory) };
     assert!((40.0..=47.5).contains(&from) && (52.5..=60.0).contains(&to), "{from} to {to} Hz");
+}
+
+#[test]
+fn the_one_record_that_is_in_g_is_told_before_anything_else() {
+    let (fixture, frfs) = disturbed(|_, value| value);
+    let frfs = frfs.with_values(|at, value| if at / 400 == 2 { value / 9.80665 } else { value });
+    let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
+    assert_ne!(diagnosis.verdict, Verdict::Consistent);
+    let first = format!("FRF {} is 0.10", frfs.pairs()[2]);
+    assert!(diagnosis.says().starts_with(&first), "{}", diagnosis.says());
 }
 
 #[test]
