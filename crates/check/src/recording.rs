@@ -87,9 +87,9 @@ impl RecordingCheck {
         let frfs = frfs::of(&measured_frfs, &sources, modelled.as_deref());
         remarks.extend(of_absurd_values(&measured_frfs));
         let channels = channels::of(&frfs, remarks);
-        let odd = modelled
-            .as_deref()
-            .and_then(|all| OddRecord::of(measured_frfs.pairs(), measured_frfs.all_values(), all));
+        let multiples: Option<Vec<f64>> =
+            frfs.iter().map(|frf| Some(frf.level? * frf.sign?.signum())).collect();
+        let odd = multiples.and_then(|multiples| OddRecord::among(measured_frfs.pairs(), &multiples));
         // A channel that is turned round is told as one.
         let odd = odd.filter(|odd| odd.factor > 0.0 || !channels.iter().any(|own| own.turned));
         remarks.extend(odd.as_ref().map(of_odd_record));

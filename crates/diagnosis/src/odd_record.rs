@@ -1,7 +1,7 @@
 //! One record among several that is another multiple of what the fixture makes of it: its unit, range or sign is wrong, and no place of a structure is.
 
 use crate::settings::statements::odd_record::{APART, FEWEST, OTHERS};
-use jointscope_spectra::FrfPair;
+use jointscope_spectra::{FrfPair, median};
 use num_complex::Complex64;
 
 /// A record that stands alone.
@@ -20,22 +20,23 @@ fn multiple(measured: &[Complex64], predicted: &[Complex64]) -> Option<f64> {
     let both = measured.iter().zip(predicted);
     let in_phase: f64 =
         both.clone().map(|(m, p)| (m * p.conj()).re / (m.norm() * p.norm())).filter(|c| c.is_finite()).sum();
-    let mut ratios: Vec<f64> =
-        both.map(|(m, p)| m.norm() / p.norm()).filter(|r| r.is_finite() && *r > 0.0).collect();
-    ratios.sort_by(f64::total_cmp);
-    let median = ratios.get(ratios.len() / 2)?;
-    Some(median * in_phase.signum())
+    let ratios = both.map(|(m, p)| m.norm() / p.norm()).filter(|r| r.is_finite() && *r > 0.0);
+    Some(median(&mut ratios.collect::<Vec<f64>>())? * in_phase.signum())
 }
 
 impl OddRecord {
-    /// The one of `measured` FRFs between these channels, FRF after FRF, that stands farther from the others than these from each other, by much, beside what is `predicted` of them.
-    pub fn of(pairs: &[FrfPair], measured: &[Complex64], predicted: &[Complex64]) -> Option<Self> {
+    /// The one of `measured` FRFs between these channels, FRF after FRF, beside what is `predicted` of them.
+    pub(crate) fn of(pairs: &[FrfPair], measured: &[Complex64], predicted: &[Complex64]) -> Option<Self> {
+        let lines = (measured.len() / pairs.len().max(1)).max(1);
+        let records = measured.chunks_exact(lines).zip(predicted.chunks_exact(lines));
+        OddRecord::among(pairs, &records.map(|(m, p)| multiple(m, p)).collect::<Option<Vec<f64>>>()?)
+    }
+
+    /// The one of these FRFs whose multiple stands farther from those of the others than these from each other, by much.
+    pub fn among(pairs: &[FrfPair], multiples: &[f64]) -> Option<Self> {
         if pairs.len() < FEWEST {
             return None;
         }
-        let lines = measured.len() / pairs.len();
-        let records = measured.chunks_exact(lines).zip(predicted.chunks_exact(lines));
-        let multiples: Vec<f64> = records.map(|(m, p)| multiple(m, p)).collect::<Option<_>>()?;
         let distance = |a: f64, b: f64| if a * b > 0.0 { (a / b).ln().abs() } else { f64::INFINITY };
         (0..multiples.len()).find_map(|odd| {
             let others = || (0..multiples.len()).filter(|&at| at != odd).map(|at| multiples[at]);

@@ -42,33 +42,9 @@ pub(crate) fn exchanged(frfs: &FrfSet, modelled: &[Complex64]) -> Vec<(usize, us
     found
 }
 
-/// The two points whose channels, all responses or all references of them, have each other's place, where that is all that was exchanged.
-pub(crate) fn swapped(pairs: &[FrfPair], exchanged: &[(usize, usize)]) -> Option<(String, String)> {
-    for is_reference in [false, true] {
-        let channel = |index: usize| {
-            let pair = &pairs[index];
-            if is_reference { (&pair.reference, &pair.response) } else { (&pair.response, &pair.reference) }
-        };
-        let points = |&(a, b): &(usize, usize)| {
-            let ((one, across), (other, also)) = (channel(a), channel(b));
-            let both = if one <= other { (one, other) } else { (other, one) };
-            (across == also).then_some(both)
-        };
-        let Some(first) = exchanged.first().and_then(points) else { continue };
-        let own = (0..pairs.len()).filter(|&index| [first.0, first.1].contains(&channel(index).0)).count();
-        if exchanged.len() > 1
-            && own == 2 * exchanged.len()
-            && exchanged.iter().all(|pair| points(pair) == Some(first))
-        {
-            return Some((first.0.to_string(), first.1.to_string()));
-        }
-    }
-    None
-}
-
-/// The two points whose channels, all responses or all references of them, have each other's place, with the labels that are right: where some of `exchanged` say so, and the FRFs that have no
-/// partner among the others are like the fixture's by these labels too, which `model` makes.
-pub(crate) fn swapped_throughout(
+/// The two points whose channels, all responses or all references of them, have each other's place, with the labels that are right: where some of `exchanged` say so, and all FRFs of both, of
+/// which some may have no partner among the others, are like what `model` makes of these labels.
+pub(crate) fn swapped(
     frfs: &FrfSet,
     modelled: &[Complex64],
     exchanged: &[(usize, usize)],

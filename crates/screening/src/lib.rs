@@ -105,10 +105,7 @@ pub fn screened(frfs: FrfSet, fixture: &Fixture) -> Result<Screened, ScreeningEr
         let found = exchanged::exchanged(&frfs, modelled);
         let mut pairs = frfs.pairs().to_vec();
         let model = |frfs: &FrfSet| self::modelled(frfs, fixture);
-        if let Some((a, b)) = exchanged::swapped(&pairs, &found) {
-            oddities.push(Oddity::Swapped(a, b));
-            found.into_iter().for_each(|(a, b)| pairs.swap(a, b));
-        } else if let Some((a, b, labels)) = exchanged::swapped_throughout(&frfs, modelled, &found, model) {
+        if let Some((a, b, labels)) = exchanged::swapped(&frfs, modelled, &found, model) {
             oddities.push(Oddity::Swapped(a, b));
             pairs = labels;
         } else {

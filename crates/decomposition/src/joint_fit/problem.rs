@@ -93,8 +93,7 @@ impl Fitted {
         }
         let mut start = self.point.coordinates.clone();
         start[problem.own()..].fill(0.0);
-        let mut afar = problem.searched(start);
-        afar = afar.and_then(|mut afar| afar.refresh(problem).map(|()| afar));
+        let afar = problem.searched(start).and_then(|mut afar| afar.refresh(problem).map(|()| afar));
         Some(afar.into_iter().fold(self, lower))
     }
 

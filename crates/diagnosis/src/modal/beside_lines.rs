@@ -9,7 +9,6 @@ use crate::fitter::Fitter;
 use crate::modal::judgement::ModalJudgement;
 use crate::modal::searcher::Named;
 use crate::settings::ModalSettings;
-use crate::settings::modal::sizes::BEYOND_ERRORS;
 use jointscope_findings::Verdict;
 use jointscope_fixture::{Effect, EffectKind};
 
@@ -38,7 +37,7 @@ impl ModalJudgement {
         let unsure = self.is_unexplained() && fitter.observation.has_scatter_for_noise();
         let has_poles = self.free_fit <= fitter.settings.modal.hopeless;
         // Errors of gains may be of any size among modes, one channel's gain for instance, which then is held against itself.
-        let gain = self.search.best.fit.evidence.sizes.gain > BEYOND_ERRORS * self.features.known.scales.gain;
+        let gain = self.search.best.fit.has_gains_beyond(&self.features.known.scales);
         let is_doubted = || alone != 0.0 || unsure || gain || self.is_beyond_errors(fitter);
         self.is_incomplete_but_usable(fitter) || (has_poles && is_doubted())
     }

@@ -4,7 +4,7 @@
 //! without the others. Here a kind at every joint is tried at once, as one statement among all. How large it is at each joint is fitted, told and stated joint by joint.
 
 use crate::candidate::Candidate;
-use crate::modal::fit::{ANY, SetOut};
+use crate::modal::fit::SetOut;
 use crate::modal::searcher::{Named, STARTS, Searcher};
 use jointscope_fixture::{Effect, Place};
 use std::collections::BTreeSet;
@@ -63,8 +63,7 @@ impl Searcher<'_> {
         let mut chosen = self.rescored(scored);
         let mut seen = BTreeSet::new();
         chosen.retain(|start| seen.insert(start.candidate));
-        // What the base explains needs nothing that explains less.
-        let least = if self.is_adequate(&base.fit) { base.fit.ln } else { ANY };
+        let least = self.least_beside(base);
         let mut fits = self.problem.work.each(chosen, STARTS, |start| {
             let names = groups.iter().find(|names| names[0] == start.candidate)?;
             self.fitted_with(base, names, &start.hypothesis, (SetOut::Both, least))

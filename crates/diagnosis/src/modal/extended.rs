@@ -95,10 +95,14 @@ impl Searcher<'_> {
         let first: Vec<Start> = starts.by_ref().take(1).collect();
         let mut fits = self.problem.work.each(first, STARTS, |start| fit(start, ANY));
         let far = fits.first().map_or(ANY, |first| first.fit.ln - self.settings.foremost.1);
-        // What the base explains needs nothing that explains less.
-        let least = if self.is_adequate(&base.fit) { far.max(base.fit.ln) } else { far };
+        let least = far.max(self.least_beside(base));
         fits.extend(self.problem.work.each(starts.collect(), STARTS, |start| fit(start, least)));
         best_of_each(fits)
+    }
+
+    /// ln p below which no fit with more than `base` matters: what that explains needs nothing that explains less.
+    pub(super) fn least_beside(&self, base: &Named) -> f64 {
+        if self.is_adequate(&base.fit) { base.fit.ln } else { ANY }
     }
 
     /// One fit of a start with one effect more than `base`; `None` where it will not come up to `least`.

@@ -8,7 +8,6 @@ use crate::modal::judgement::ModalJudgement;
 use crate::modal::places::Places;
 use crate::modal::search::ModalSearch;
 use crate::modal::searcher::{Named, Searcher};
-use crate::settings::modal::sizes::BEYOND_ERRORS;
 use jointscope_findings::Verdict;
 use jointscope_fixture::Entry;
 
@@ -97,8 +96,7 @@ impl Judge<'_> {
                 || modes(&best.fit) < part * modes(none) && model(&best.fit) < model(none)
         };
         // Gains of records may be off by anything beside a name, and from one test to the next. By themselves they are what is left out.
-        let beyond = best.fit.evidence.sizes.gain > BEYOND_ERRORS * self.searcher.problem.sizes.gain;
-        let gains = beyond && !self.searcher.calibrated;
+        let gains = best.fit.has_gains_beyond(self.searcher.problem.sizes) && !self.searcher.calibrated;
         match (best.names.is_empty(), adequate) {
             (true, true) if !gains => Verdict::Consistent,
             (true, _) => Verdict::Unexplained,

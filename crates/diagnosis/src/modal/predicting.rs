@@ -33,10 +33,12 @@ impl ModalJudgement {
         let departs = |fit: &ModalFit| fit.largest_pull() > settings.adequate.1;
         let bought = departs(&self.search.none) && !departs(&self.search.best.fit);
         let misses = search.repaired.chi2 >= settings.part * search.refitted.chi2 && !bought;
-        if self.verdict == Verdict::PartlyExplained && misses {
-            return (self.withdrawn(), Search { repaired: search.refitted.clone(), ..search });
-        }
-        if self.verdict == Verdict::Explained && self.spoils_lines(fitter, &search) {
+        let is_none = match self.verdict {
+            Verdict::PartlyExplained => misses,
+            Verdict::Explained => self.spoils_lines(fitter, &search),
+            Verdict::Consistent | Verdict::Unexplained => false,
+        };
+        if is_none {
             return (self.withdrawn(), Search { repaired: search.refitted.clone(), ..search });
         }
         if self.verdict == Verdict::Explained && self.leaves_untold(fitter, &search) {

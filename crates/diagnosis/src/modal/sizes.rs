@@ -3,7 +3,7 @@
 use crate::modal::fit::ModalFit;
 use crate::modal::standing::Problem;
 use crate::settings::ModalSettings;
-use crate::settings::modal::sizes::{AS_PROBABLE, LEAST_OF_STATED_DAMPING, NEGLIGIBLE};
+use crate::settings::modal::sizes::{AS_PROBABLE, BEYOND_ERRORS, LEAST_OF_STATED_DAMPING, NEGLIGIBLE};
 use jointscope_fixture::{Fixture, Place, StatedError};
 use jointscope_model_error::{
     DAMPING, ErrorSizes, Evidence, FREQUENCY, GAIN, KINDS, SHAPE, SizePrior, UPPER_RESIDUAL,
@@ -85,6 +85,13 @@ pub(super) fn known(settings: &ModalSettings, fixture: &Fixture) -> SizePrior {
     stated[SHAPE] = residue.is_some();
     stated[GAIN] = by_record;
     SizePrior { scales, stated }
+}
+
+impl ModalFit {
+    /// Whether errors of gains are larger than any beside what is `usual`: among modes they may be of any size.
+    pub(crate) fn has_gains_beyond(&self, usual: &ErrorSizes) -> bool {
+        self.evidence.sizes.gain > BEYOND_ERRORS * usual.gain
+    }
 }
 
 impl Problem<'_> {

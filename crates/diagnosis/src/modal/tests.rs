@@ -212,6 +212,11 @@ fn gains_of_records_that_are_anything_leave_no_fixture_consistent_and_the_odd_re
     let frfs = exact.frfs().clone().with_values(|at, v| if at / count == 1 { v / 9.80665 } else { v });
     let variance = frfs.all_values().iter().map(|value| 1e-6 * value.norm_sqr()).collect();
     let frfs = frfs.with_variance(variance).unwrap();
+    let (observation, settings) = (Observation::new(&frfs, |_| true).unwrap(), Settings::default());
+    let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
+    let judged = ModalJudgement::of(&fitter, &Hypothesis::nominal(&fixture, false), &[], None).unwrap();
+    assert!(judged.errors[0].is_none(), "modes are those of the fixture");
+    assert_eq!(judged.verdict, Verdict::Unexplained);
     let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
     assert_ne!(diagnosis.verdict, Verdict::Consistent);
     let odd = diagnosis.odd_record().unwrap();
