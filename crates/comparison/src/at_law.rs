@@ -6,10 +6,16 @@
 //! Whether joints are the same is tested by what FRFs alone tell under this law, with C free: of a C that is held where it gives out no energy the estimate is no longer normal about
 //! the true one, of a free C it is. What other laws would change belongs to no such test: under the law that holds it is no error of either joint.
 
+use crate::laws_in_common::LawsInCommon;
 use crate::stiffness_file::Matrix;
 use crate::{Decomposed, FiledJoint, FiledLikelihood, FollowedLaw};
 use jointscope_inference::NormalEquations;
 use serde::Serialize;
+
+/// Share of a frequency below which two are the same number.
+pub(crate) const SAME_FREQUENCY: f64 = 1e-6;
+/// Odds by which a law must be more probable than those whose numbers can be stated at one frequency to be taken instead of these.
+const MORE_PROBABLE: f64 = 20.0;
 
 /// The law over frequency at which joints are compared.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -18,33 +24,102 @@ pub struct LawOfAll {
     pub law: String,
     /// Joints of which another one is the most probable by their own FRFs.
     pub moved: Vec<String>,
+    /// Joints whose C is stated at the frequency of the first one's, their own files having it at another.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub restated: Vec<String>,
 }
 
 impl LawOfAll {
-    /// The most probable law of all these joints together; nothing where there is none under which every file says what its FRFs tell.
+    /// The most probable law of all these joints together; nothing where they follow laws of their own, where there is none under which every file says what its FRFs tell, or where its numbers are
+    /// stated at frequencies on which they depend.
     pub(crate) fn of(joints: &[Decomposed]) -> Option<Self> {
         let fits: Vec<&FiledJoint> =
             joints.iter().map(|joint| joint.fitted.as_ref()).collect::<Option<_>>()?;
         let first = fits.first()?;
+        let common = LawsInCommon::of(&joints.iter().collect::<Vec<_>>());
+        if common.as_ref().is_some_and(LawsInCommon::is_refuted) {
+            return None;
+        }
         let beside = first.laws.iter().map(|entry| entry.law.as_str());
         let laws = beside.filter(|law| *law != first.stated_law()).chain([first.stated_law()]);
-        let evidence =
-            |law: &str| fits.iter().map(|fit| fit.probability_under(law).map(f64::ln)).sum::<Option<f64>>();
-        let known = laws.filter_map(|law| Some((law, evidence(law)?)));
-        let (law, _) = known.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let evidence = |law: &str| {
+            let usable =
+                fits.iter().map(|fit| fit.probability_under(law).map(f64::ln)).sum::<Option<f64>>()?;
+            Some(common.as_ref().and_then(|common| common.evidence(law)).unwrap_or(usable))
+        };
+        let known: Vec<(&str, f64)> = laws.filter_map(|law| Some((law, evidence(law)?))).collect();
+        let best = |at_one_frequency: bool| {
+            let all = known.iter().filter(|(law, _)| !at_one_frequency || is_at_one_frequency(joints, law));
+            all.copied().max_by(|a, b| a.1.total_cmp(&b.1))
+        };
+        let (law, found) = best(true)?;
+        if best(false).is_some_and(|(_, most)| most > found + MORE_PROBABLE.ln()) {
+            return None;
+        }
         let is_moved = |joint: &&Decomposed| joint.fitted.as_ref().is_some_and(|fit| fit.stated_law() != law);
         let moved = joints.iter().filter(is_moved).map(|joint| joint.name.clone()).collect();
-        Some(LawOfAll { law: law.to_owned(), moved })
+        let restated = joints.iter().filter(|joint| restated_by(joints, joint, law) != 1.0);
+        let restated = restated.map(|joint| joint.name.clone()).collect();
+        Some(LawOfAll { law: law.to_owned(), moved, restated })
     }
 
     /// The joints at this law.
     pub(crate) fn placed(&self, joints: &[Decomposed]) -> Vec<Decomposed> {
         let at = |joint: &Decomposed| {
             let moved = joint.fitted.as_ref().and_then(|fit| fit.at_law(&self.law));
+            let by = restated_by(joints, joint, &self.law);
+            let moved = moved.map(|fit| if by == 1.0 { fit } else { fit.restated(by) });
             Decomposed { fitted: moved.or_else(|| joint.fitted.clone()), ..joint.clone() }
         };
         joints.iter().map(at).collect()
     }
+
+    /// The same, if every file says what its FRFs tell under this law, with numbers at one frequency.
+    pub(crate) fn placed_whole(&self, joints: &[Decomposed]) -> Option<Vec<Decomposed>> {
+        let fit = |joint: &Decomposed| joint.fitted.as_ref()?.at_law(&self.law);
+        let is_whole = joints.iter().all(|joint| fit(joint).is_some());
+        (is_whole && is_at_one_frequency(joints, &self.law)).then(|| self.placed(joints))
+    }
+}
+
+/// Where a joint's numbers are stated, Hz.
+fn stated_at(joint: &Decomposed) -> Option<f64> {
+    Some(joint.fitted.as_ref()?.follows.as_ref()?.frequency)
+}
+
+fn are_stated_alike(joints: &[Decomposed]) -> bool {
+    let all: Vec<f64> = joints.iter().filter_map(stated_at).collect();
+    all.iter().all(|at| (at - all[0]).abs() <= SAME_FREQUENCY * all[0].abs())
+}
+
+/// Whether numbers under a law do not depend on frequency, are stated at one, or can be.
+fn is_at_one_frequency(joints: &[Decomposed], law: &str) -> bool {
+    let is_restatable = law.starts_with("structural") && joints.iter().all(|joint| joint.at_once.is_none());
+    law.starts_with("viscous") || law.starts_with("constant") || is_restatable || are_stated_alike(joints)
+}
+
+/// What C of a structural joint, ηK/ω, is multiplied by to be that at the frequency of the first of all; 1 of other laws.
+fn restated_by(joints: &[Decomposed], joint: &Decomposed, law: &str) -> f64 {
+    if !law.starts_with("structural") || joint.at_once.is_some() || are_stated_alike(joints) {
+        return 1.0;
+    }
+    stated_at(joint).zip(joints.iter().find_map(stated_at)).map_or(1.0, |(own, first)| own / first)
+}
+
+/// The joints as if their laws were certain: without what laws change in them, where files say what that is.
+pub(crate) fn certain(joints: &[Decomposed]) -> Vec<Decomposed> {
+    let of = |joint: &Decomposed| {
+        let fit = joint.fitted.as_ref().filter(|fit| fit.departure(fit.stated_law()).is_some());
+        let fit = fit.map(|fit| {
+            let mut covariance = fit.covariance;
+            for (row, of_laws) in covariance.iter_mut().zip(fit.law_covariance) {
+                row.iter_mut().zip(of_laws).for_each(|(entry, of_law)| *entry -= of_law);
+            }
+            FiledJoint { covariance, law_covariance: [[0.0; 6]; 6], ..fit.clone() }
+        });
+        Decomposed { fitted: fit.or_else(|| joint.fitted.clone()), ..joint.clone() }
+    };
+    joints.iter().map(of).collect()
 }
 
 /// The joints as their FRFs alone tell of them under the laws that their numbers are of, C free. What one fit found at once stays as it is.
@@ -134,6 +209,40 @@ impl FiledJoint {
             row.iter_mut().zip(of_laws).for_each(|(entry, of_law)| *entry += of_law);
         }
         Some(FiledJoint { covariance, ..moved })
+    }
+
+    /// The same joint with C in other units: `by` of them are one of before.
+    fn restated(&self, by: f64) -> Self {
+        let factor = |slot: usize| if slot < 3 { 1.0 } else { by };
+        let scaled = |matrix: &[[f64; 6]; 6]| -> [[f64; 6]; 6] {
+            std::array::from_fn(|i| std::array::from_fn(|j| matrix[i][j] * factor(i) * factor(j)))
+        };
+        let likelihood = self.likelihood.as_ref().and_then(|filed| {
+            let (slots, likelihood) = filed.of_six(self.quantities.len())?;
+            // One unit of the new number is 1/by of the old.
+            let unit = |index: usize| slots.get(index).map_or(1.0, |slot| factor(*slot));
+            Some(FiledLikelihood::of(filed.elements.clone(), &likelihood.scaled(unit)))
+        });
+        let follows = self
+            .follows
+            .clone()
+            .map(|follows| FollowedLaw { frequency: follows.frequency * by.recip(), ..follows });
+        let mut model_error = self.model_error;
+        model_error.covariance = scaled(&model_error.covariance);
+        let mut laws = self.laws.clone();
+        for middle in laws.iter_mut().filter_map(|law| law.in_the_middle.as_mut()) {
+            middle.damping = middle.damping.map(|row| row.map(|c| c * by));
+        }
+        FiledJoint {
+            damping: self.damping.map(|row| row.map(|c| c * by)),
+            covariance: scaled(&self.covariance),
+            law_covariance: scaled(&self.law_covariance),
+            model_error,
+            likelihood,
+            follows,
+            laws,
+            ..self.clone()
+        }
     }
 
     /// Mean products of what the laws compared differ by from the one stated.

@@ -1,5 +1,6 @@
 //! What keeps a comparison from being taken as it stands.
 
+use crate::at_law::SAME_FREQUENCY;
 use crate::{Compared, Decomposed, Estimate, Number, Together, WhyApart};
 use jointscope_inference::Z95;
 use serde::Serialize;
@@ -90,8 +91,6 @@ pub enum Caution {
 
 /// Share of a length below which two are the same number.
 const SAME_LENGTH: f64 = 1e-9;
-/// Share of a frequency below which two are the same number.
-const SAME_FREQUENCY: f64 = 1e-6;
 
 impl Caution {
     /// What is to be known of the joints as their files tell it.

@@ -1,9 +1,10 @@
 //! Several decompositions side by side: ratios and orders of their elements, and what to be careful about.
 
-use crate::tests_of_equality::Tests;
+use crate::by_law::{choices, posteriors};
+use crate::tests_of_equality::{ByLaw, Tests};
 use crate::{
-    Caution, Compared, Decomposed, ELEMENTS, Equality, Estimate, FiledJoint, Kind, LawOfAll, ModelRatios,
-    Number, Pair, Ranking, Specimens, Together,
+    Caution, Compared, Decomposed, ELEMENTS, Equality, Estimate, FiledJoint, Kind, LawOfAll, LawsDiffer,
+    ModelRatios, Number, Pair, Ranking, Specimens, Together,
 };
 
 /// Those of a symmetric matrix.
@@ -178,8 +179,17 @@ impl Comparison {
         let law = LawOfAll::of(&joints).filter(|_| compared == Compared::AllFrfs);
         let given = joints;
         let joints = law.as_ref().map_or_else(|| given.clone(), |law| law.placed(&given));
-        let (numbers, together) = numbers(&joints, compared, options.independent);
-        let tests = Tests::of((&given, &joints), law.is_some(), &numbers, (compared, options.independent));
+        let numbers = numbers(&joints, compared);
+        let choices = choices(&given, &joints, law.as_ref());
+        let by_law = match compared {
+            Compared::AllFrfs => posteriors(&choices, &given, &numbers, options.independent),
+            _ => {
+                let estimates: Vec<Estimate> = joints.iter().map(|joint| stated(joint, compared)).collect();
+                vec![(1.0, Together::independent(&estimates, &numbers))]
+            }
+        };
+        let together = with_spread(&by_law);
+        let tests = Tests::of((&given, &choices), law.is_some(), &numbers, (compared, options.independent));
         let estimates: Vec<Estimate> = joints.iter().map(|joint| stated(joint, compared)).collect();
         let cautions = Caution::of(&joints, &estimates, (compared, &numbers), &together);
         let all: Vec<usize> = (0..joints.len()).collect();
@@ -188,7 +198,10 @@ impl Comparison {
             let own = tests.of_pair((a, b));
             let of_all = tests.of_all.as_ref().map(|by| (by, [a, b]));
             let tested = of_all.or_else(|| own.as_ref().map(|by| (by, [0, 1])));
-            Pair::of(&together, &numbers, (a, b), [name(a), name(b)], tested)
+            let pair = Pair::of(&by_law, &numbers, (a, b), [name(a), name(b)], tested);
+            let is_of_fits = compared == Compared::AllFrfs && pair.equality.is_none();
+            let laws_differ = is_of_fits.then(|| LawsDiffer::of(&given[a], &given[b])).flatten();
+            Pair { laws_differ, ..pair }
         };
         let pairs = all.iter().flat_map(|&a| (a + 1..joints.len()).map(move |b| (a, b))).map(pair).collect();
         let rankings = numbers.iter().enumerate().map(|(n, number)| {
@@ -207,9 +220,9 @@ impl Comparison {
             Specimens::of(kind, &together, &numbers, &named)
         });
         let (rankings, specimens) = (rankings.collect(), specimens.collect());
-        let equality = tests.of_all.as_ref().and_then(|by| Equality::of_all(by, &all, &numbers));
+        let equality = tests.of_all.as_ref().and_then(|by| Equality::by_law(by, &all, &numbers));
         Ok(Comparison {
-            models: ModelRatios::all(&joints, &together, &numbers),
+            models: ModelRatios::all(&joints, &by_law, &numbers),
             relation,
             compared,
             law,
@@ -291,21 +304,22 @@ fn stated(joint: &Decomposed, compared: Compared) -> Estimate {
     found.or(joint.average.map(|average| average.estimate)).unwrap_or_default()
 }
 
-/// The numbers that any of the joints has, and all of them in one Gaussian.
-fn numbers(joints: &[Decomposed], compared: Compared, independent: bool) -> (Vec<Number>, Together) {
+/// The numbers that any of the joints has.
+fn numbers(joints: &[Decomposed], compared: Compared) -> Vec<Number> {
     let estimates: Vec<Estimate> = joints.iter().map(|joint| stated(joint, compared)).collect();
     let elements: &[(usize, usize)] = if compared == Compared::Average { &ELEMENTS } else { &DISTINCT };
     let all = [Kind::Stiffness, Kind::Damping]
         .into_iter()
         .flat_map(|kind| elements.iter().map(move |&element| Number { kind, element }));
     // Bodies that do not rotate leave all but the first element empty.
-    let numbers: Vec<Number> =
-        all.filter(|number| estimates.iter().any(|estimate| number.of(estimate) != (0.0, 0.0))).collect();
-    let together = match compared {
-        Compared::AllFrfs => Together::of(joints, &numbers, independent),
-        _ => Together::independent(&estimates, &numbers),
-    };
-    (numbers, together)
+    all.filter(|number| estimates.iter().any(|estimate| number.of(estimate) != (0.0, 0.0))).collect()
+}
+
+/// All joints in one Gaussian by the laws compared at, with how far other laws take them.
+fn with_spread(by_law: &ByLaw) -> Together {
+    let mut together = by_law[0].1.clone();
+    together.spread(&by_law[1..]);
+    together
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Joints of models over measured ones: SIM/EXP and FEM/EXP, number by number.
 
-use crate::{Decomposed, Kind, Number, Pair, Ratio, Source, Together};
+use crate::tests_of_equality::ByLaw;
+use crate::{Decomposed, Kind, Number, Pair, Ratio, Source};
 use serde::Serialize;
 
 /// A model's joint over a measured one. These are the ratios of their [`Pair`], the measurement being the first of it.
@@ -58,7 +59,7 @@ impl ModelIs {
 
 impl ModelRatios {
     /// Every model over every measurement. Of joints found at once those of one name are of one kind, others are not set against each other.
-    pub(crate) fn all(joints: &[Decomposed], together: &Together, numbers: &[Number]) -> Vec<Self> {
+    pub(crate) fn all(joints: &[Decomposed], by_law: &ByLaw, numbers: &[Number]) -> Vec<Self> {
         let of = |wanted: fn(Source) -> bool| {
             let sources = joints.iter().enumerate().map(|(place, joint)| (place, joint.source));
             sources.filter_map(move |(place, source)| Some((place, source.filter(|&s| wanted(s))?)))
@@ -72,7 +73,7 @@ impl ModelRatios {
             .filter(|&(first, (second, _))| belong(&joints[first], &joints[second]))
             .map(|(first, (second, kind))| {
                 let names = [first, second].map(|joint| joints[joint].name.as_str());
-                let pair = Pair::of(together, numbers, (first, second), names, None);
+                let pair = Pair::of(by_law, numbers, (first, second), names, None);
                 let all = numbers.iter().zip(pair.numbers).map(|(number, paired)| ModelRatio {
                     element: paired.element,
                     ratio: paired.ratio,

@@ -43,6 +43,59 @@ pub(crate) fn ratio_interval(a: f64, b: f64, [aa, ab, bb]: [f64; 3]) -> Option<[
     Some([(middle - root) / first, (middle + root) / first])
 }
 
+/// Steps of a bisection.
+const BISECTIONS: usize = 80;
+
+/// 95 % interval of a number that is normal by each of several laws: weight, mean and variance.
+pub(crate) fn mixed_interval(parts: &[(f64, f64, f64)]) -> [f64; 2] {
+    let total: f64 = parts.iter().map(|(weight, ..)| weight).sum();
+    let below = |x: f64| {
+        let of = |&(weight, mean, variance): &(f64, f64, f64)| {
+            let z = (x - mean) / variance.max(0.0).sqrt();
+            weight * if z.is_nan() { 0.5 } else { cumulative(z) }
+        };
+        parts.iter().map(of).sum::<f64>() / total
+    };
+    let reach = |sign: f64| {
+        let ends = parts.iter().map(|(_, mean, variance)| sign * mean + FAR * variance.max(0.0).sqrt());
+        sign * ends.fold(f64::NEG_INFINITY, f64::max)
+    };
+    let outside = cumulative(-Z95);
+    [outside, 1.0 - outside].map(|share| bisected(reach(-1.0), reach(1.0), |x| below(x) > share))
+}
+
+/// Where `is_beyond` begins to hold between two ends.
+fn bisected(mut low: f64, mut high: f64, is_beyond: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if is_beyond(middle) { high = middle } else { low = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// The same of the ratio b/a, normal by each law with a weight, a, b and their variances and covariance: every r that b − r·a does not exclude. `None` where a cannot be told from zero by one of them.
+pub(crate) fn mixed_ratio_interval(parts: &[(f64, [f64; 2], [f64; 3])]) -> Option<[f64; 2]> {
+    let each: Option<Vec<[f64; 2]>> =
+        parts.iter().map(|&(_, [a, b], variances)| ratio_interval(a, b, variances)).collect();
+    let each = each?;
+    if let [only] = each[..] {
+        return Some(only);
+    }
+    let total: f64 = parts.iter().map(|(weight, ..)| weight).sum();
+    let below = |r: f64| {
+        let of = |&(weight, [a, b], [aa, ab, bb]): &(f64, [f64; 2], [f64; 3])| {
+            let z = (r * a - b) / (bb - 2.0 * r * ab + r * r * aa).max(0.0).sqrt();
+            weight * if z.is_nan() { 0.5 } else { cumulative(a.signum() * z) }
+        };
+        parts.iter().map(of).sum::<f64>() / total
+    };
+    let outside = cumulative(-Z95);
+    // Every part's interval holds all but this share of it: the mixture's lies between the outermost of their ends.
+    let low = each.iter().map(|[low, _]| *low).fold(f64::INFINITY, f64::min);
+    let high = each.iter().map(|[_, high]| *high).fold(f64::NEG_INFINITY, f64::max);
+    Some([outside, 1.0 - outside].map(|share| bisected(low, high, |r| below(r) > share)))
+}
+
 /// Standard deviations beyond which a normal number is not looked for.
 const FAR: f64 = 9.0;
 /// Intervals between two kinks.

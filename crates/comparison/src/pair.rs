@@ -1,8 +1,10 @@
 //! Two joints: by how much they differ, in what ratio, and whether they are the same.
 
-use crate::normal::{chi2_above, larger_magnitude, mahalanobis, ratio_interval};
-use crate::{Kind, Number, Together};
-use jointscope_inference::{SIGNIFICANT, interval95};
+use crate::laws_in_common::LawsInCommon;
+use crate::normal::{chi2_above, larger_magnitude, mahalanobis, mixed_interval, mixed_ratio_interval};
+use crate::tests_of_equality::ByLaw;
+use crate::{Decomposed, Kind, Number, Together};
+use jointscope_inference::{SIGNIFICANT, Z95, interval95};
 use serde::Serialize;
 
 /// A value with its standard deviation and 95 % interval, SI.
@@ -81,8 +83,20 @@ impl Equality {
         Some(Equality { chi2, degrees, p_value: chi2_above(chi2, degrees) })
     }
 
+    /// The same by each of several laws: χ² is of the first, the p-value the mean of all, each as often as it is probable.
+    pub(crate) fn by_law(by: &ByLaw, joints: &[usize], numbers: &[Number]) -> Option<Self> {
+        let each = by.iter().map(|(weight, of)| Some((*weight, Equality::of_all(of, joints, numbers)?)));
+        let each: Vec<Option<(f64, Equality)>> = each.collect();
+        let first = each.first().copied().flatten()?.1;
+        let (sum, weight) = each
+            .iter()
+            .flatten()
+            .fold((0.0, 0.0), |(sum, all), (weight, of)| (sum + weight * of.p_value, all + weight));
+        Some(Equality { p_value: if each.len() == 1 { first.p_value } else { sum / weight }, ..first })
+    }
+
     /// Of all numbers of several joints at once; nothing where it is not known how their errors go together.
-    pub(crate) fn of_all(together: &Together, joints: &[usize], numbers: &[Number]) -> Option<Self> {
+    fn of_all(together: &Together, joints: &[usize], numbers: &[Number]) -> Option<Self> {
         if !together.has_covariances {
             return None;
         }
@@ -123,6 +137,29 @@ pub struct Pair {
     /// Numbers that this test leaves out, since neither joint's FRFs tell anything of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub untold: Vec<String>,
+    /// Their laws over frequency, where they count as following laws of their own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub laws_differ: Option<LawsDiffer>,
+}
+
+/// Two joints whose FRFs are not of one law over frequency.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LawsDiffer {
+    /// The most probable law of the first.
+    pub first: String,
+    /// The most probable law of the second.
+    pub second: String,
+    /// Probability that both follow one law, whichever it is, rather than each its own.
+    pub one_law: f64,
+}
+
+impl LawsDiffer {
+    /// Of joints whose laws were compared and differ.
+    pub(crate) fn of(first: &Decomposed, second: &Decomposed) -> Option<Self> {
+        let common = LawsInCommon::of(&[first, second]).filter(LawsInCommon::is_refuted)?;
+        let law = |joint: &Decomposed| Some(joint.fitted.as_ref()?.laws.first()?.law.clone());
+        Some(LawsDiffer { first: law(first)?, second: law(second)?, one_law: common.probability })
+    }
 }
 
 /// A function of a joint's numbers with its derivatives.
@@ -150,31 +187,37 @@ const DERIVED: [Derived; 2] = [
 ];
 
 impl Pair {
-    /// Of two joints of all; `tested` is by what they are tested for being the same.
+    /// Of two joints of all, by each choice of their laws; `tested` is by what they are tested for being the same.
     pub(crate) fn of(
-        together: &Together,
+        by_law: &ByLaw,
         numbers: &[Number],
         (first, second): (usize, usize),
         names: [&str; 2],
-        tested: Option<(&Together, [usize; 2])>,
+        tested: Option<(&ByLaw, [usize; 2])>,
     ) -> Self {
+        let part = |n: usize, (weight, together): &(f64, Together)| {
+            let of = |a, b| together.covariance((a, n), (b, n));
+            let values = [first, second].map(|joint| together.value(joint, n));
+            (*weight, values, [of(first, first), of(first, second), of(second, second)])
+        };
         let mut all: Vec<PairedNumber> = (0..numbers.len())
             .map(|n| {
-                let of = |a, b| together.covariance((a, n), (b, n));
-                let values = [first, second].map(|joint| together.value(joint, n));
-                let variances = [of(first, first), of(first, second), of(second, second)];
-                PairedNumber::of((numbers[n].name(), numbers[n].unit()), values, variances, false)
+                let parts: Vec<Part> = by_law.iter().map(|by| part(n, by)).collect();
+                PairedNumber::of((numbers[n].name(), numbers[n].unit()), &parts, false)
             })
             .collect();
-        if together.has_covariances {
-            all.extend(derived(together, numbers, (first, second)));
+        if by_law.iter().all(|(_, together)| together.has_covariances) {
+            all.extend(derived(by_law, numbers, (first, second)));
         }
         Pair {
             first: names[0].to_owned(),
             second: names[1].to_owned(),
             numbers: all,
-            equality: tested.and_then(|(by, joints)| Equality::of_all(by, &joints, numbers)),
-            untold: tested.map_or_else(Vec::new, |(by, joints)| undetermined_by_both(by, joints, numbers)),
+            equality: tested.and_then(|(by, joints)| Equality::by_law(by, &joints, numbers)),
+            untold: tested.map_or_else(Vec::new, |(by, joints)| {
+                by.first().map_or_else(Vec::new, |(_, by)| undetermined_by_both(by, joints, numbers))
+            }),
+            laws_differ: None,
         }
     }
 
@@ -190,16 +233,19 @@ fn undetermined_by_both(together: &Together, joints: [usize; 2], numbers: &[Numb
     (0..numbers.len()).filter(|&n| is_undetermined(n)).map(|n| numbers[n].name()).collect()
 }
 
-fn derived(together: &Together, numbers: &[Number], (first, second): (usize, usize)) -> Vec<PairedNumber> {
+/// Two numbers by one choice of laws: how probable it is, their values, variances and covariance.
+type Part = (f64, [f64; 2], [f64; 3]);
+
+fn derived(by_law: &ByLaw, numbers: &[Number], (first, second): (usize, usize)) -> Vec<PairedNumber> {
     let place = |i, j| numbers.iter().position(|n| (n.kind, n.element) == (Kind::Stiffness, (i, j)));
     let (Some(a), Some(b), Some(d)) = (place(0, 0), place(0, 1), place(1, 1)) else { return Vec::new() };
     let places = [a, b, d];
-    let three = [first, second].map(|joint| places.map(|n| together.value(joint, n)));
-    if three.iter().any(|k| k[0] <= 0.0) {
+    let three = |together: &Together| [first, second].map(|joint| places.map(|n| together.value(joint, n)));
+    if by_law.iter().any(|(_, together)| three(together).iter().any(|k| k[0] <= 0.0)) {
         return Vec::new();
     }
-    let of = |entry: &Derived| {
-        let [one, other] = three.map(entry.of);
+    let part = |entry: &Derived, (weight, together): &(f64, Together)| -> Part {
+        let [one, other] = three(together).map(entry.of);
         let covariance = |(joint, by): (usize, &[f64; 3]), (other, with): (usize, &[f64; 3])| {
             let products = places.iter().zip(by).flat_map(|(&m, x)| {
                 let inner =
@@ -211,35 +257,59 @@ fn derived(together: &Together, numbers: &[Number], (first, second): (usize, usi
         let (one_by, other_by) = ((first, &one.1), (second, &other.1));
         let variances =
             [covariance(one_by, one_by), covariance(one_by, other_by), covariance(other_by, other_by)];
-        PairedNumber::of((entry.name.to_owned(), entry.unit), [one.0, other.0], variances, entry.is_place)
+        (*weight, [one.0, other.0], variances)
+    };
+    let of = |entry: &Derived| {
+        let parts: Vec<Part> = by_law.iter().map(|by| part(entry, by)).collect();
+        PairedNumber::of((entry.name.to_owned(), entry.unit), &parts, entry.is_place)
     };
     DERIVED.iter().map(of).collect()
 }
 
 impl PairedNumber {
-    fn of(
-        (element, unit): (String, &'static str),
-        [a, b]: [f64; 2],
-        variances: [f64; 3],
-        is_place: bool,
-    ) -> Self {
-        let [aa, ab, bb] = variances;
+    /// Values are those of the first part; the interval is that of all, each as often as it is probable, and the standard deviation what a normal number with such an interval has.
+    fn of((element, unit): (String, &'static str), parts: &[Part], is_place: bool) -> Self {
+        let (_, [a, b], [aa, ab, bb]) = parts[0];
         let ratio = || {
             if aa <= 0.0 || bb <= 0.0 {
                 return None;
             }
-            let ci95 = ratio_interval(a, b, variances)?;
+            let own = mixed_ratio_interval(&parts[..1])?;
+            // A law by which the first cannot be told from zero has no ratio.
+            let ci95 = mixed_ratio_interval(parts)?;
             let value = b / a;
             let variance = (bb - 2.0 * value * ab + value * value * aa) / (a * a);
-            Some(Ratio { value, std: variance.max(0.0).sqrt(), ci95 })
+            let std = variance.max(0.0).sqrt();
+            let std = if parts.len() == 1 { std } else { std * (ci95[1] - ci95[0]) / (own[1] - own[0]) };
+            Some(Ratio { value, std, ci95 })
         };
         PairedNumber {
             element,
             unit,
-            difference: Figure::normal(b - a, aa + bb - 2.0 * ab),
+            difference: difference(parts),
             ratio: if is_place { None } else { ratio() },
             correlation: (aa > 0.0 && bb > 0.0).then(|| (ab / (aa * bb).sqrt()).clamp(-1.0, 1.0)),
-            second_is_larger: larger_magnitude(a, b, variances),
+            second_is_larger: second_is_larger(parts),
         }
     }
+}
+
+fn difference(parts: &[Part]) -> Figure {
+    let each = parts.iter().map(|&(weight, [a, b], [aa, ab, bb])| (weight, b - a, aa + bb - 2.0 * ab));
+    let each: Vec<(f64, f64, f64)> = each.collect();
+    let (_, value, variance) = each[0];
+    if each.len() == 1 {
+        return Figure::normal(value, variance);
+    }
+    let ci95 = mixed_interval(&each);
+    Figure { value, std: 0.5 * (ci95[1] - ci95[0]) / Z95, ci95 }
+}
+
+fn second_is_larger(parts: &[Part]) -> f64 {
+    if let [(_, [a, b], variances)] = *parts {
+        return larger_magnitude(a, b, variances);
+    }
+    let total: f64 = parts.iter().map(|(weight, ..)| weight).sum();
+    let each = parts.iter().map(|&(weight, [a, b], variances)| weight * larger_magnitude(a, b, variances));
+    each.sum::<f64>() / total
 }

@@ -164,6 +164,12 @@ pub struct ComparedLaw {
     /// Its parameters by their names, SI.
     #[serde(default)]
     pub parameters: Value,
+    /// Exponent of a springpot.
+    #[serde(default, deserialize_with = "where_whole", skip_serializing_if = "Option::is_none")]
+    pub exponent: Option<Uncertain>,
+    /// Relaxation time of a standard linear solid, s.
+    #[serde(default, deserialize_with = "where_whole", skip_serializing_if = "Option::is_none")]
+    pub time: Option<Uncertain>,
     /// K and C in the middle of the band; files of earlier versions do not say.
     #[serde(default, deserialize_with = "where_whole")]
     pub in_the_middle: Option<MatrixPair>,

@@ -2,8 +2,8 @@
 //!
 //! Each fit tells of its joint and of the fixture's quantities what a Gaussian likelihood does. Of joints tested on the same blocks these quantities are the same:
 //! the likelihoods are multiplied, with one set of quantities, whose prior enters once. The posterior then has both joints, and what the blocks' tolerances do to one they do to
-//! the other: it cancels in their difference. What the fits get wrong besides is added to each joint by itself, what laws over frequency differ by to joints of one law
-//! [together](CommonLaw).
+//! the other: it cancels in their difference. What the fits get wrong besides is added to each joint by itself, what laws over frequency differ by to all that follow one
+//! together ([`by_law`](crate::by_law)).
 //!
 //! Where the common quantities are farther from what is stated than chance takes them, the posterior is widened by Birge's ratio, as that of one fit is: each group of joints
 //! that bodies connect by its own.
@@ -15,7 +15,7 @@
 //! physics forbids.
 
 use crate::bodies::{Part, connected, differing, likelihood, parts, shared, sharing_a_body, tests};
-use crate::common_law::CommonLaw;
+use crate::common_law::groups as followers;
 use crate::{Apart, Decomposed, Estimate, Number, SharedBody, WhyApart};
 use jointscope_inference::{NormalEquations, birge_ratio};
 use std::collections::BTreeMap;
@@ -86,8 +86,13 @@ impl Together {
         together
     }
 
-    /// Of joints fitted to all FRFs; `asked_apart` takes them all as tested on blocks of their own.
-    pub(crate) fn of(joints: &[Decomposed], numbers: &[Number], asked_apart: bool) -> Self {
+    /// Of joints fitted to all FRFs; `asked_apart` takes them all as tested on blocks of their own. Whether tests contradict each other on the blocks is asked of the joints as `given`, each by the law that
+    /// explains its own FRFs best: by a law that does not hold a fit bends the blocks to make up for it.
+    pub(crate) fn of(
+        (joints, given): (&[Decomposed], &[Decomposed]),
+        numbers: &[Number],
+        asked_apart: bool,
+    ) -> Self {
         let mut together = Together::empty(joints.len(), numbers.len());
         together.has_covariances = true;
         let tests = tests(joints);
@@ -99,7 +104,7 @@ impl Together {
             let parts = parts(joints, &why);
             together.shared = shared(joints, &parts);
             let firsts: Vec<usize> = tests.iter().map(|test| test[0]).collect();
-            if let Some(odd) = together.most_at_odds(joints, &firsts) {
+            if let Some(odd) = together.most_at_odds(given, &firsts) {
                 let test = tests.iter().find(|test| test[0] == odd);
                 part(test.map_or(&[odd], Vec::as_slice), &mut why, WhyApart::Disagrees);
                 continue;
@@ -123,9 +128,12 @@ impl Together {
         }
         let names = |test: &Vec<usize>| test.iter().map(|&joint| joints[joint].name.clone()).collect();
         together.at_once = tests.iter().filter(|test| test.len() > 1).map(names).collect();
-        for law in CommonLaw::of(joints) {
-            together.put_law(&law, joints, numbers);
-        }
+        let is_of_known_laws = |joint: &usize| {
+            joints[*joint].fitted.as_ref().is_some_and(|fit| fit.departure(fit.stated_law()).is_some())
+        };
+        let followers = followers(joints).into_iter().filter(|group| group.len() > 1);
+        together.one_law =
+            followers.filter(|group| group.iter().all(is_of_known_laws)).map(|group| names(&group)).collect();
         let apart = |(joint, why): (usize, &Option<WhyApart>)| {
             Some(Apart { joint: joints[joint].name.clone(), why: (*why)? })
         };
@@ -181,22 +189,21 @@ impl Together {
         }
     }
 
-    /// Replaces what the laws make of each of these joints by what one law makes of all.
-    fn put_law(&mut self, law: &CommonLaw, joints: &[Decomposed], numbers: &[Number]) {
-        for (a, &joint) in law.joints.iter().enumerate() {
-            let own = joints[joint].fitted.as_ref().map_or([[0.0; 6]; 6], |fit| fit.law_covariance);
-            for (b, &other) in law.joints.iter().enumerate() {
-                for (i, number) in numbers.iter().enumerate() {
-                    for (j, with) in numbers.iter().enumerate() {
-                        let (m, n) = (number.slot(), with.slot());
-                        let before = self.covariance((joint, i), (other, j));
-                        let alone = if a == b { own[m][n] } else { 0.0 };
-                        self.put((joint, i), (other, j), before - alone + law.covariance((a, m), (b, n)));
-                    }
-                }
+    /// Moves a joint's numbers.
+    pub(crate) fn shift(&mut self, joint: usize, by: &[f64]) {
+        let own = &mut self.mean[joint * self.count..(joint + 1) * self.count];
+        own.iter_mut().zip(by).for_each(|(value, by)| *value += by);
+    }
+
+    /// Adds how far the numbers of other laws are from these, each as often as it is probable.
+    pub(crate) fn spread(&mut self, others: &[(f64, Together)]) {
+        let n = self.mean.len();
+        for (probability, other) in others {
+            let apart: Vec<f64> = other.mean.iter().zip(&self.mean).map(|(other, own)| other - own).collect();
+            for (a, row) in apart.iter().zip(self.covariance.chunks_exact_mut(n.max(1))) {
+                row.iter_mut().zip(&apart).for_each(|(entry, b)| *entry += probability * a * b);
             }
         }
-        self.one_law.push(law.joints.iter().map(|&joint| joints[joint].name.clone()).collect());
     }
 
     /// Puts in the posterior of all these tests with the quantities that they share; `None` where it is not determined to working precision.

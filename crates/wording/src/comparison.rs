@@ -61,11 +61,22 @@ pub fn tested(comparison: &Comparison, pair: &Pair) -> String {
             "the files do not say how the errors of these estimates go together: equality is not tested"
                 .to_owned()
         }
+        None if pair.laws_differ.is_some() => pair.laws_differ.as_ref().map_or_else(String::new, |of| {
+            let [one, other] = [&of.first, &of.second].map(|law| law.replace('_', " "));
+            let probability = match of.one_law {
+                p if p < 1e-3 => "less than 0.001".to_owned(),
+                p => format!("{p:.3}"),
+            };
+            format!(
+                "{first} and {second} are not the same joint: they follow different laws over frequency, {first} most probably a {one} one and {second} a {other} one; that both follow one \
+                 law has a probability of {probability}"
+            )
+        }),
         None if !untold.is_empty() => {
             "no number has a standard deviation: equality cannot be tested".to_owned()
         }
         None => format!(
-            "it is not tested whether {first} and {second} are the same: their files tell of no law over frequency that is probable for both, and numbers of different laws \
+            "it is not tested whether {first} and {second} are the same: their files tell of no law over frequency that is probable for both, with numbers at one frequency, and numbers of different laws \
              are not the same numbers; of files of earlier versions `jointscope decompose` makes them anew"
         ),
     }
@@ -88,7 +99,16 @@ fn laws(comparison: &Comparison) -> Vec<String> {
         true => String::new(),
         false => format!("; by its own FRFs another is the most probable of {}", law.moved.join(", ")),
     };
-    vec![format!("compared at one law over frequency, the most probable of all together: {name}{moved}")]
+    let restated = match law.restated.is_empty() {
+        true => String::new(),
+        false => format!(
+            "; C of {} is stated at the frequency of the first, the middle of its band being another",
+            law.restated.join(", ")
+        ),
+    };
+    vec![format!(
+        "compared at one law over frequency, the most probable of all together: {name}{moved}{restated}"
+    )]
 }
 
 /// What the tests share, and which share nothing.

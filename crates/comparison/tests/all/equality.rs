@@ -52,7 +52,7 @@ fn joints_whose_most_probable_laws_differ_are_compared_at_the_law_most_probable_
 }
 
 #[test]
-fn joints_of_no_law_in_common_are_not_tested_for_being_the_same_and_that_is_said() {
+fn joints_of_no_law_in_common_are_not_the_same_and_that_is_said() {
     let mut a = by_law(("viscous", 1.0, [1000.0, 40.0]), ("fractional", 1e-9, [1002.0, 60.0]));
     let mut b = by_law(("fractional", 1.0, [1002.0, 60.0]), ("viscous", 1e-9, [1000.0, 40.0]));
     for file in [&mut a, &mut b] {
@@ -60,7 +60,67 @@ fn joints_of_no_law_in_common_are_not_tested_for_being_the_same_and_that_is_said
     }
     let found = both(&[a, b]);
     assert!(found.law.is_none() && found.equality.is_none() && found.pairs[0].equality.is_none());
+    let said = tested(&found, &found.pairs[0]);
+    assert!(
+        said.contains("a and b are not the same joint: they follow different laws over frequency, a most probably a viscous one and b a fractional one"),
+        "{said}"
+    );
+    assert!(said.contains("less than 0.001"), "{said}");
+}
+
+#[test]
+fn joints_whose_files_tell_of_no_law_are_not_tested_for_being_the_same_and_that_is_said() {
+    let mut a = by_law(("viscous", 1.0, [1000.0, 40.0]), ("fractional", 1e-9, [1002.0, 60.0]));
+    let mut b = by_law(("fractional", 1.0, [1002.0, 60.0]), ("viscous", 1e-9, [1000.0, 40.0]));
+    for file in [&mut a, &mut b] {
+        file["joint"]["laws"] = json!([]);
+    }
+    let found = both(&[a, b]);
+    assert!(found.law.is_none() && found.pairs[0].laws_differ.is_none());
     assert!(tested(&found, &found.pairs[0]).contains("it is not tested whether a and b are the same"));
+}
+
+/// The same with how well the exponent of its fractional law is known.
+fn with_exponent(mut file: Value, value: f64, std: f64) -> Value {
+    let laws = file["joint"]["laws"].as_array_mut().unwrap();
+    let fractional = laws.iter_mut().find(|law| law["law"] == "fractional").unwrap();
+    fractional["exponent"] = json!({"value": value, "std": std});
+    file
+}
+
+#[test]
+fn joints_of_other_exponents_follow_no_one_fractional_law() {
+    // Exponents at either end imitate a viscous and a structural joint.
+    let a = by_law(("viscous", 0.9, [1000.0, 40.0]), ("fractional", 0.1, [1000.0, 40.0]));
+    let b = by_law(("structural", 0.9, [1000.0, 40.0]), ("fractional", 0.1, [1000.0, 40.0]));
+    let found = both(&[with_exponent(a.clone(), 0.97, 0.01), with_exponent(b.clone(), 0.03, 0.01)]);
+    let differ = found.pairs[0].laws_differ.as_ref().unwrap();
+    assert_eq!((differ.first.as_str(), differ.second.as_str()), ("viscous", "structural"));
+    assert!(found.law.is_none() && found.pairs[0].equality.is_none() && differ.one_law < 1e-9);
+    // Where the FRFs tell nothing of the exponents they may be the same: 2·0.1·0.1/(1 + 2·0.1·0.1) is below 0.05 still.
+    let found = both(&[with_exponent(a, 0.97, 9.0), with_exponent(b, 0.03, 9.0)]);
+    let one_law = found.pairs[0].laws_differ.as_ref().unwrap().one_law;
+    assert!((one_law - 0.02 / 1.02).abs() < 1e-3, "{one_law}");
+}
+
+#[test]
+fn c_of_structural_joints_whose_bands_differ_is_compared_at_one_frequency() {
+    // C of b, which is half as large at twice the frequency, to half of ±1.
+    let own = |c: f64| ("structural", 0.9, [1000.0, c]);
+    let a = by_law(own(40.0), ("viscous", 0.1, [1000.0, 40.0]));
+    let mut b = by_law(own(20.0), ("viscous", 0.1, [1000.0, 40.0]));
+    b["joint"]["follows"]["frequency"] = json!(200.0);
+    b["joint"]["covariance"][3][3] = json!(0.25);
+    b["joint"]["likelihood"]["information"][1][1] = json!(4.0);
+    let found = both(&[a, b]);
+    let pair = &found.pairs[0];
+    let c11 = pair.number("C11").unwrap();
+    assert!((c11.ratio.unwrap().value - 1.0).abs() < 1e-9, "{c11:?}");
+    assert!((found.together.std(1, 1) - 1.0).abs() < 1e-2, "{}", found.together.std(1, 1));
+    assert!(pair.equality.unwrap().p_value > 0.99);
+    assert!(
+        shared(&found).iter().any(|said| said.contains("C of b is stated at the frequency of the first"))
+    );
 }
 
 #[test]

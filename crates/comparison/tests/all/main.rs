@@ -216,14 +216,49 @@ fn with_laws(k11: f64, off: f64, probability: f64, best: &str) -> Value {
     file
 }
 
+/// Probability that a normal number is below x.
+fn below(x: f64, mean: f64, std: f64) -> f64 {
+    // By Simpson's rule: the tests need no more than five digits.
+    let (from, steps) = (mean - 9.0 * std, 20_000);
+    let step = (x - from) / f64::from(steps);
+    let density = |x: f64| (-0.5 * ((x - mean) / std).powi(2)).exp() / (std * std::f64::consts::TAU.sqrt());
+    let sum: f64 = (0..steps).map(|i| density(from + (f64::from(i) + 0.5) * step)).sum();
+    sum * step
+}
+
+/// Checks that the 95 % interval of the difference of K11 is that of a mixture of normal numbers: weight, mean and variance.
+fn is_of_mixture(found: &Comparison, parts: &[(f64, f64, f64)]) {
+    let difference = found.pairs[0].number("K11").unwrap().difference;
+    let share = |x: f64| parts.iter().map(|(w, mean, v)| w * below(x, *mean, v.sqrt())).sum::<f64>();
+    let [low, high] = difference.ci95.map(share);
+    assert!((low - 0.025).abs() < 1e-5 && (high - 0.975).abs() < 1e-5, "{difference:?} {low} {high}");
+    let normal = (difference.ci95[1] - difference.ci95[0]) / (2.0 * 1.959_963_985);
+    assert!((difference.std - normal).abs() < 1e-4 * normal);
+}
+
 #[test]
 fn what_one_law_changes_in_two_joints_alike_cancels_in_their_difference() {
     let files = [with_laws(1000.0, 30.0, 0.8, "structural"), with_laws(1050.0, 32.0, 0.8, "structural")];
     let found = compared(&files, &ComparisonOptions::default());
     // The law is structural with 0.8²/(0.8² + 0.2²) = 16/17: then the difference is 2 larger.
-    assert!((apart(&found) - (2.0 + 4.0 * 16.0 / 17.0f64).sqrt()).abs() < 1e-9, "{}", apart(&found));
+    is_of_mixture(&found, &[(1.0 / 17.0, 50.0, 2.0), (16.0 / 17.0, 52.0, 2.0)]);
     assert!((found.together.std(0, 0) - (1.0 + 900.0 * 16.0 / 17.0f64).sqrt()).abs() < 1e-9);
     assert_eq!(found.together.one_law, [["a", "b"]]);
+}
+
+#[test]
+fn an_improbable_law_far_away_widens_an_interval_by_its_probability_and_not_by_its_distance() {
+    let width = |off: f64| {
+        let files = [with_laws(1000.0, 30.0, 0.1, "viscous"), with_laws(1050.0, 30.0 + off, 0.1, "viscous")];
+        let found = compared(&files, &ComparisonOptions::default());
+        let [low, high] = found.pairs[0].number("K11").unwrap().difference.ci95;
+        (high - low) / (2.0 * 1.959_963_985 * 2.0f64.sqrt())
+    };
+    // With 1/82 it is off by 1000: the upper end leaves out 0.0128 in place of 0.025 of what the other law tells.
+    let far = width(1000.0);
+    assert!(far > 1.02 && far < 1.12, "{far}");
+    assert!((width(1e6) - far).abs() < 1e-6);
+    assert!((width(0.0) - 1.0).abs() < 1e-4);
 }
 
 #[test]
@@ -241,12 +276,21 @@ fn joints_stated_by_a_law_that_they_follow_differ_from_the_other_laws_by_what_th
     };
     let mut files = [by_its_law(1000.0, 30.0), by_its_law(1050.0, 32.0)];
     let found = compared(&files, &ComparisonOptions::default());
-    assert!((apart(&found) - (2.0 + 4.0 / 17.0f64).sqrt()).abs() < 1e-9, "{}", apart(&found));
+    // What the FRFs tell is taken at 970 and 1018.
+    is_of_mixture(&found, &[(16.0 / 17.0, 48.0, 2.0), (1.0 / 17.0, 46.0, 2.0)]);
     let frequencies = |found: &Comparison| {
         found.cautions.iter().any(|caution| matches!(caution, Caution::Frequencies { .. }))
     };
     assert!(!frequencies(&found));
     files[1]["joint"]["follows"]["frequency"] = json!(200.0);
+    assert!(
+        !frequencies(&compared(&files, &ComparisonOptions::default())),
+        "C of structural joints is stated at one"
+    );
+    for file in &mut files {
+        file["joint"]["follows"]["law"] = json!("fractional");
+        file["joint"]["laws"][0]["law"] = json!("fractional");
+    }
     assert!(frequencies(&compared(&files, &ComparisonOptions::default())));
     for file in &mut files {
         file["joint"]["follows"]["law"] = json!("viscous");
@@ -259,11 +303,20 @@ fn joints_stated_by_a_law_that_they_follow_differ_from_the_other_laws_by_what_th
 
 #[test]
 fn joints_of_other_laws_keep_what_laws_change_in_each() {
-    let files = [with_laws(1000.0, 30.0, 0.8, "structural"), with_laws(1050.0, 32.0, 0.3, "viscous")];
+    // One is of a structural joint with 0.99, the other of a viscous one: one law for both has 2·2·0.99·0.01 against 1.
+    let mut files = [with_laws(1000.0, 30.0, 0.99, "structural"), with_laws(1050.0, 32.0, 0.01, "viscous")];
+    files[0]["joint"]["follows"] = json!({"law": "structural", "frequency": 100.0});
+    files[1]["joint"]["laws"].as_array_mut().unwrap().reverse();
     let found = compared(&files, &ComparisonOptions::default());
-    let expected = 2.0 + 0.8 * 900.0 + 0.3 * 1024.0;
-    assert!((apart(&found) - f64::sqrt(expected)).abs() < 1e-9, "{}", apart(&found));
+    let all = 1.0 + 2.0 * 0.01 / 0.99;
+    is_of_mixture(
+        &found,
+        &[(1.0 / all, 50.0, 2.0), (0.01 / 0.99 / all, 80.0, 2.0), (0.01 / 0.99 / all, 82.0, 2.0)],
+    );
     assert!(found.together.one_law.is_empty());
+    let differ = found.pairs[0].laws_differ.as_ref().unwrap();
+    assert_eq!((differ.first.as_str(), differ.second.as_str()), ("structural", "viscous"));
+    assert!((differ.one_law - 0.0396 / 1.0396).abs() < 1e-9);
 }
 
 #[test]

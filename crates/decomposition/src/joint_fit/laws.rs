@@ -33,6 +33,8 @@ pub struct LawFit {
     pub change: Option<RealMatrix2>,
     /// τ (s) or α, of the laws that have one.
     pub shape: Option<f64>,
+    /// Standard deviation of it, where the FRFs determine the law.
+    pub shape_std: Option<f64>,
     /// What the FRFs tell of its K and C in the middle of the band, of a law that the joint's numbers are not of: for a comparison with joints that follow it. Nothing of improbable laws.
     pub likelihood: Option<JointLikelihood>,
     law: Dynamics,
@@ -50,6 +52,7 @@ impl LawFit {
         let is_stated = (self.kind, self.mass.is_some()) == stated;
         self.likelihood =
             self.likelihood.filter(|_| !is_stated).map(|likelihood| likelihood.inflated(inflation));
+        self.shape_std = self.shape_std.map(|std| std * inflation.sqrt());
         self
     }
 
@@ -65,6 +68,7 @@ impl LawFit {
             damping: d.scale(law.own_damping(own)),
             change: (law.change != Form::Zero).then(|| l.scale(1.0 / law.middle)),
             shape: law.shape(own),
+            shape_std: None,
             likelihood: None,
             law: *law,
             coordinates: own.to_vec(),
@@ -314,6 +318,9 @@ impl Candidate {
         let own = &at.point.coordinates[first..first + law.count()];
         let mass = problem.mass.map(|_| problem.mass_at(&at.point.coordinates));
         let mut fit = LawFit::of(law, own, at.point.objective, mass);
+        if let Some(covariance) = equations.covariance().filter(|_| law.shapes() > 0) {
+            fit.shape_std = law.shape_with_std(own, |own| covariance.std(first + own)).map(|(_, std)| std);
+        }
         if problem.laws.len() == 1 {
             let (numbers, at) = (named_coordinates(law), &at.point.coordinates);
             fit.likelihood =
@@ -347,6 +354,7 @@ mod tests {
                 damping,
                 change,
                 shape,
+                shape_std: None,
                 likelihood: None,
                 law,
                 coordinates,

@@ -106,10 +106,16 @@ fn law(law: &LawFit) -> ComparedLaw {
     };
     let (stiffness, stiffness_per_rad_per_s, mass) = (law.stiffness, law.change, law.mass);
     let parameters = LawParameters { stiffness, losses, shape, stiffness_per_rad_per_s, mass };
+    let uncertain = |kind: LawKind| {
+        let known = law.shape.zip(law.shape_std).filter(|_| law.kind == kind);
+        known.map(|(value, std)| Uncertain { value, std })
+    };
     ComparedLaw {
         law: law.name(),
         probability: law.probability,
         parameters: value(parameters),
+        exponent: uncertain(LawKind::Fractional),
+        time: uncertain(LawKind::StandardLinearSolid),
         in_the_middle: Some(pair(law.in_the_middle())),
         likelihood: law.likelihood.as_ref().map(likelihood),
     }

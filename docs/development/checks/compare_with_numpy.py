@@ -1,0 +1,254 @@
+#!/usr/bin/env python3
+"""Tests joints on the same two blocks and asks the program whether they are the same, and by how much they differ.
+
+    python3 docs/development/checks/compare_with_numpy.py PROGRAM [--blocks 200] [--seed 1] [--only KIND …] [--keep DIR]
+
+Nothing of the program's own mechanics is used: two rigid blocks and a joint of K + iωC or K(1 + iη), written here with NumPy. Each set of BLOCKS is drawn from its fixture's tolerances once; seven
+recordings are made on it, four FRFs with coherence of ten blows, 5 to 1200 Hz, with a noise of 0.3, 1 or 3 % in turn. Kinds, each with its own pairs of these:
+
+    equal        one joint twice, viscous
+    equal_loss   one joint twice, structural
+    one_percent  the second 1 % stiffer
+    five_percent the second 5 % stiffer
+    laws         a viscous joint and a structural one of the same K and, at its first resonance, the same losses
+    specimens    three: the joint twice and the one 1 % stiffer; and three of the same joint
+
+Of each: p of equality (share below 0.01 and 0.05, distance from uniform), the share said to contradict on the blocks, the share of 95 % intervals of ratios and differences that hold the truth, and how wide
+they are against the best possible: Cramér and Rao's bound of both joints, the law known and the blocks in common. Ends with status 1 where a share is farther from what is stated than chance takes it
+one time in a thousand (of intervals: only if fewer hold).
+
+With --keep recordings and decompositions stay in DIR, and those that are there are used again.
+"""
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+import pyuff
+from scipy.stats import binom, kstest
+
+LINES = np.arange(5.0, 1200.1, 2.5)
+PAIRS = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")]
+NOISE = (0.003, 0.01, 0.03)
+BLOWS = 10
+#: Number of the recording, share by which K is larger, and whether its losses are structural.
+RECORDINGS = {"a": (1.0, False), "b": (1.0, False), "c": (1.0, False), "one": (1.01, False), "five": (1.05, False), "loss": (1.0, True), "loss2": (1.0, True)}
+KINDS = {
+    "equal": ["a", "b"],
+    "equal_loss": ["loss", "loss2"],
+    "one_percent": ["a", "one"],
+    "five_percent": ["a", "five"],
+    "laws": ["a", "loss"],
+    "specimens": ["a", "b", "c"],
+    "specimens_differ": ["a", "b", "one"],
+}
+NUMBERS = ["K11", "K12", "K22", "C11", "C12", "C22"]
+LOSS = 0.01
+
+
+def stated(random):
+    """A fixture file of two blocks."""
+    quantity = lambda value, std: {"value": float(value), "std": float(std)}
+    masses, lengths, gap = random.uniform(0.9, 2.5, 2), random.uniform([0.05, 0.06], [0.08, 0.1]), random.uniform(0.05, 0.08)
+    inertias = masses * (lengths**2 + random.uniform(0.03, 0.06) ** 2) / 12
+    second = random.uniform(2.5e-10, 4.5e-10)
+    body = lambda at, x: {"mass": quantity(masses[at], 1e-3 * masses[at]), "inertia": quantity(inertias[at], 5e-3 * inertias[at]), "x_cg": quantity(x, 1e-4)}
+    point = lambda own, x, std: {"body": own, "x": quantity(x, std)}
+    return {
+        "bodies": {"A": body(0, -lengths[0] / 2), "B": body(1, gap + lengths[1] / 2)},
+        "points": {"1": point("A", -0.93 * lengths[0], 2e-4), "2": point("A", 0, 1e-4), "3": point("B", gap, 1e-4), "4": point("B", gap + 0.94 * lengths[1], 2e-4)},
+        "joints": {"J": {"from": "2", "to": "3", "beam": {"youngs_modulus": quantity(2.07e11, 2e9), "second_moment": quantity(second, 0.01 * second)}}},
+        "damping": {"modal_ratios": [quantity(0.004, 1e-3), quantity(0.005, 1e-3)]},
+    }
+
+
+def quantities(fixture):
+    """Values and deviations of all that blocks and points state: masses and inertias, then places."""
+    bodies = [fixture["bodies"][name][key] for name in "AB" for key in ("mass", "inertia", "x_cg")]
+    all = bodies + [fixture["points"][name]["x"] for name in "1234"]
+    return np.array([each["value"] for each in all]), np.array([each["std"] for each in all])
+
+
+def accelerances(q, stiffness, damping, is_structural):
+    """H of each pair by line: `damping` is the imaginary part of K where that is structural."""
+    (mass_a, inertia_a, cg_a, mass_b, inertia_b, cg_b), places = q[:6], dict(zip("1234", q[6:]))
+    mass = np.diag([mass_a, inertia_a, mass_b, inertia_b])
+    row = lambda name: np.array([1, places[name] - cg_a, 0, 0]) if name in "12" else np.array([0, 0, 1, places[name] - cg_b])
+    length = places["3"] - places["2"]
+    across = np.array([row("3") - row("2") - length * np.array([0, 1, 0, 0]), [0, -1, 0, 1]])
+    s = 2j * np.pi * LINES
+    dynamic = stiffness + (1j * damping if is_structural else s[:, None, None] * damping)
+    impedance = s[:, None, None] ** 2 * mass + across.T @ dynamic @ across
+    moved = np.linalg.solve(impedance, np.broadcast_to(np.array([row("1"), row("2")]).T, (len(s), 4, 2)))
+    return np.array([s**2 * (moved[:, :, int(i) - 1] @ row(o)) for o, i in PAIRS])
+
+
+class Blocks:
+    """One set of blocks with a joint, as stated and as it is."""
+
+    def __init__(self, number, seed):
+        random = np.random.default_rng([seed, number])
+        self.fixture, self.noise = stated(random), NOISE[number % len(NOISE)]
+        self.stated, self.std = quantities(self.fixture)
+        self.truth = self.stated + self.std * random.standard_normal(len(self.std))
+        length = self.truth[8] - self.truth[7]
+        beam = self.fixture["joints"]["J"]["beam"]
+        bending = 2.07e11 * beam["second_moment"]["value"] * (1 + 0.01 * random.standard_normal())
+        self.stiffness = bending / length**3 * np.array([[12, -6 * length], [-6 * length, 4 * length**2]])
+        reduced = np.prod(self.truth[[0, 3]]) / np.sum(self.truth[[0, 3]])
+        self.resonance = np.sqrt(self.stiffness[0, 0] / reduced)
+        self.random = random
+
+    def joint(self, name):
+        """K, and C or Im K."""
+        factor, is_structural = RECORDINGS[name]
+        damping = LOSS * self.stiffness * (1 if is_structural else 1 / self.resonance)
+        return factor * self.stiffness, damping, is_structural
+
+    def truths(self, name):
+        """The six numbers, C of a structural joint by the frequency at which it is stated, 602.5 Hz."""
+        stiffness, damping, is_structural = self.joint(name)
+        damping = damping / (2 * np.pi * 602.5) if is_structural else damping
+        return np.array([matrix[i] for matrix in (stiffness, damping) for i in ((0, 0), (0, 1), (1, 1))])
+
+    def deviations(self, exact):
+        """Standard deviation of the mean of all blows, of each FRF's real and of its imaginary part."""
+        return self.noise * np.sqrt(np.mean(abs(exact) ** 2, axis=1) / 2)
+
+    def record(self, name, path, random):
+        exact = accelerances(self.truth, *self.joint(name))
+        deviation = self.deviations(exact)[:, None, None] * np.sqrt(BLOWS)
+        noise = random.standard_normal((2, len(PAIRS), BLOWS, len(LINES)))
+        each = exact[:, None] + deviation * (noise[0] + 1j * noise[1])
+        mean = each.mean(1)
+        coherence = abs(mean) ** 2 / (abs(each) ** 2).mean(1)
+        path.unlink(missing_ok=True)
+        file = pyuff.UFF(str(path))
+        for at, pair in enumerate(PAIRS):
+            file.write_sets(dataset(4, pair, mean[at]))
+            file.write_sets(dataset(6, pair, coherence[at]))
+
+    def information(self, name):
+        """Fisher's of the six numbers and the quantities, each in units of itself or of its deviation."""
+        stiffness, damping, is_structural = self.joint(name)
+        six = np.array([matrix[i] for matrix in (stiffness, damping) for i in ((0, 0), (0, 1), (1, 1))])
+        square = lambda a, b, d: np.array([[a, b], [b, d]])
+        of = lambda x: accelerances(self.truth + self.std * x[6:], square(*(six * (1 + x[:6]))[:3]), square(*(six * (1 + x[:6]))[3:]), is_structural)
+        deviation = self.deviations(of(np.zeros(6 + len(self.std))))[:, None]
+        columns = []
+        for at in range(6 + len(self.std)):
+            step = np.zeros(6 + len(self.std))
+            step[at] = 1e-6 if at < 3 else 1e-3
+            slope = (of(step) - of(-step)) / (2 * step[at] * deviation)
+            columns.append(np.concatenate([slope.real.ravel(), slope.imag.ravel()]))
+        columns = np.array(columns)
+        return columns @ columns.T
+
+    def bound(self, first, second):
+        """Least standard deviation of the logarithm of each ratio."""
+        n = len(self.std)
+        information = np.zeros((12 + n, 12 + n))
+        for at, name in enumerate((first, second)):
+            own = np.r_[6 * at:6 * at + 6, 12:12 + n]
+            information[np.ix_(own, own)] += self.information(name)
+        information[12:, 12:] += np.eye(n)
+        scale = np.sqrt(np.diag(information))
+        covariance = np.linalg.inv(information / np.outer(scale, scale)) / np.outer(scale, scale)
+        contrast = np.hstack([-np.eye(6), np.eye(6), np.zeros((6, n))])
+        return np.sqrt(np.diag(contrast @ covariance @ contrast.T))
+
+
+def dataset(kind, pair, values):
+    response, reference = pair
+    unit = (12, 13, "m/s^2", "N") if kind == 4 else (0, 0, "NONE", "NONE")
+    return {
+        "type": 58, "func_type": kind, "rsp_node": int(response), "rsp_dir": 2, "ref_node": int(reference), "ref_dir": 2, "data": values, "x": LINES, "id1": "x", "id2": "NONE",
+        "id3": "NONE", "id4": "NONE", "id5": f"averages {BLOWS}", "ver_num": 0, "load_case_id": 0, "rsp_ent_name": "NONE", "ref_ent_name": "NONE",
+        "abscissa_spacing": 1, "abscissa_min": LINES[0], "abscissa_inc": LINES[1] - LINES[0], "num_pts": len(values), "z_axis_value": 0,
+        "abscissa_spec_data_type": 18, "abscissa_len_unit_exp": 0, "abscissa_force_unit_exp": 0, "abscissa_temp_unit_exp": 0,
+        "ordinate_spec_data_type": unit[0], "orddenom_spec_data_type": unit[1], "ord_data_type": 6 if kind == 4 else 4, "abscissa_axis_lab": "x", "abscissa_axis_units_lab": "Hz",
+        "ordinate_axis_lab": "y", "ordinate_axis_units_lab": unit[2], "orddenom_axis_lab": "y", "orddenom_axis_units_lab": unit[3], "binary": 1,
+    }
+
+
+def run(program, folder, *words):
+    ran = subprocess.run([program, *words], cwd=folder, capture_output=True, text=True, env=dict(os.environ, RAYON_NUM_THREADS="1"))
+    if ran.returncode not in (0, 1):
+        sys.exit(f"{folder}: {' '.join(words)}: {ran.stderr.strip()}")
+
+
+def decomposed(blocks, number, seed, program, folder, names):
+    """Writes and decomposes what is not there yet."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "fixture.json").write_text(json.dumps(blocks.fixture))
+    for name in names:
+        if not (folder / name / "stiffness.json").exists():
+            blocks.record(name, folder / f"{name}.uff", np.random.default_rng([seed, number, list(RECORDINGS).index(name)]))
+            run(program, folder, "decompose", "fixture.json", f"{name}.uff", "-o", name)
+            (folder / f"{name}.uff").unlink()
+
+
+def compared(program, folder, names):
+    run(program, folder, "compare", *names, "-o", "out-" + "-".join(names))
+    return json.loads((folder / ("out-" + "-".join(names)) / "comparison.json").read_text())
+
+
+class Score:
+    """What came of one kind."""
+
+    def __init__(self):
+        self.p, self.untested, self.contradict, self.refuted, self.laws, self.count = [], 0, 0, 0, {}, 0
+        self.holds = {"ratio": {n: [] for n in NUMBERS}, "difference": {n: [] for n in NUMBERS}}
+        self.width, self.error = {n: [] for n in NUMBERS}, {n: [] for n in NUMBERS}
+
+    def add(self, blocks, names, found):
+        self.count += 1
+        equality = found["equality"]
+        if equality is None:
+            self.untested += 1
+        else:
+            self.p.append(equality["p_value"])
+        self.contradict += any(each["what"] == "bodies_disagree" for each in found["cautions"])
+        law = found.get("law", {}).get("law", "none")
+        self.laws[law] = self.laws.get(law, 0) + 1
+        self.refuted += any(is_refuted(pair) for pair in found["pairs"])
+        for pair in found["pairs"]:
+            one, other = blocks.truths(pair["first"]), blocks.truths(pair["second"])
+            is_of_one_law = RECORDINGS[pair["first"]][1] == RECORDINGS[pair["second"]][1]
+            bound = blocks.bound(pair["first"], pair["second"])
+            for at, number in enumerate(NUMBERS):
+                entry = next((entry for entry in pair["numbers"] if entry["element"] == number), None)
+                if entry is None or at >= 3 and not is_of_one_law:
+                    continue
+                low, high = entry["difference"]["ci95"]
+                self.holds["difference"][number].append(low <= other[at] - one[at] <= high)
+                if entry["ratio"] is None:
+                    continue
+                low, high = entry["ratio"]["ci95"]
+                ratio = other[at] / one[at]
+                self.holds["ratio"][number].append(low <= ratio <= high)
+                self.width[number].append(entry["ratio"]["std"] / ratio / bound[at])
+                self.error[number].append((entry["ratio"]["value"] / ratio - 1) / bound[at])
+
+    def says(self, kind):
+        p = np.array(self.p)
+        of = lambda bound: f"{np.mean(p < bound):.3f}"
+        far = kstest(p, "uniform").statistic if len(p) else np.nan
+        tests = f"p below 0.01: {of(0.01)}, 0.05: {of(0.05)}; farthest from uniform {far:.3f}, smallest {p.min():.1g}" if len(p) else "no p"
+        rows = [f"{kind}: {self.count} compared, {self.untested} without a test; {tests}; different: {self.refuted}; contradict on the blocks: {self.contradict}; laws {self.laws}"]
+        for number in NUMBERS:
+            ratio, difference = self.holds["ratio"][number], self.holds["difference"][number]
+            if not ratio:
+                continue
+            width, error = np.array(self.width[number]), np.array(self.error[number])
+            rows.append(f"   {number}: intervals hold, ratio {np.mean(ratio):.3f} of {len(ratio)}, difference {np.mean(difference):.3f}; stated/best: median {np.median(width):.2f}, "
+                        f"nine of ten below {np.quantile(width, 0.9):.2f}; rms error/best {np.sqrt(np.mean(error**2)):.2f}, of the inner 98 % {np.sqrt(np.mean(np.sort(error**2)[:max(1, int(0.98 * len(error)))])):.2f}")
+        return "\n".join(rows)
+
+
+def is_refuted(pair):
+    return pair["equality"] is not None and pair["equality"]["p_value"] < 0.05 or pair.get("laws_differ") is not None
