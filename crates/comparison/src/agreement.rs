@@ -6,6 +6,7 @@
 //! Only combinations of q count of which the tests tell something. Along the others a fit lies in a flat, curved valley: where in it the fit ends is known to a few tenths of the prior's
 //! deviation, since χ² hardly changes there, and not to the hundredth that A leaves it.
 
+use crate::by_law::Choice;
 use crate::normal::chi2_above;
 use crate::{Decomposed, Together};
 use jointscope_linalg::{Cholesky, generalized_symmetric_eigen};
@@ -19,11 +20,20 @@ const LINEAR: f64 = 1e-4;
 
 impl Together {
     /// The test that contradicts most others on the bodies they share, of as many the one of the least probable agreement; nothing where all agree. The more pairs are
-    /// looked at, the less probable each has to be. Each test stands by its first joint.
-    pub(crate) fn most_at_odds(&self, joints: &[Decomposed], firsts: &[usize]) -> Option<usize> {
+    /// looked at, the less probable each has to be. Each test stands by its first joint. Agreement is the mean of that under each choice of laws, as often as it is probable.
+    pub(crate) fn most_at_odds(&self, choices: &[Choice], firsts: &[usize]) -> Option<usize> {
         let all = firsts.iter().enumerate().flat_map(|(i, &a)| firsts[i + 1..].iter().map(move |&b| [a, b]));
+        let agreement = |[a, b]: [usize; 2]| {
+            let known = choices.iter().filter(|choice| choice.apart.is_none());
+            let each: Vec<(f64, f64)> = known
+                .filter_map(|of| Some((of.weight, self.agreement(&of.joints[a], &of.joints[b])?)))
+                .collect();
+            let weight: f64 = each.iter().map(|(weight, _)| weight).sum();
+            let sum: f64 = each.iter().map(|(weight, p)| weight * p).sum();
+            (weight > 0.0).then(|| sum / weight)
+        };
         let looked_at: Vec<([usize; 2], f64)> =
-            all.filter_map(|[a, b]| Some(([a, b], self.agreement(&joints[a], &joints[b])?))).collect();
+            all.filter_map(|pair| Some((pair, agreement(pair)?))).collect();
         let disagree = DISAGREE / looked_at.len() as f64;
         let at_odds = |joint: usize| {
             let own = looked_at.iter().filter(|(pair, p)| pair.contains(&joint) && *p < disagree);

@@ -67,15 +67,10 @@ fn choice(
 }
 
 /// The posterior of all joints by each choice of laws, with its probability; the first is of the laws compared at.
-pub(crate) fn posteriors(
-    choices: &[Choice],
-    given: &[Decomposed],
-    numbers: &[Number],
-    independent: bool,
-) -> Vec<(f64, Together)> {
+pub(crate) fn posteriors(choices: &[Choice], numbers: &[Number], independent: bool) -> Vec<(f64, Together)> {
     let total: f64 = choices.iter().map(|choice| choice.weight).sum();
     let of = |choice: &Choice| {
-        let mut together = Together::of((&certain(&choice.joints), given), numbers, independent);
+        let mut together = Together::of((&certain(&choice.joints), choices), numbers, independent);
         for (joint, by) in choice.apart.iter().flatten().enumerate() {
             together.shift(joint, &numbers.iter().map(|number| by[number.slot()]).collect::<Vec<_>>());
         }

@@ -1,7 +1,7 @@
 //! Several decompositions side by side: ratios and orders of their elements, and what to be careful about.
 
 use crate::by_law::{choices, posteriors};
-use crate::tests_of_equality::{ByLaw, Tests};
+use crate::tests_of_equality::{ByLaw, of_two};
 use crate::{
     Caution, Compared, Decomposed, ELEMENTS, Equality, Estimate, FiledJoint, Kind, LawOfAll, LawsDiffer,
     ModelRatios, Number, Pair, Ranking, Specimens, Together,
@@ -95,7 +95,7 @@ pub struct Comparison {
     pub together: Together,
     /// Every two of them, in the order given.
     pub pairs: Vec<Pair>,
-    /// Whether all joints are the same; nothing where that of two has none.
+    /// Whether all joints are the same: of the two that differ most, its p-value times the number of pairs; nothing where two are not tested.
     pub equality: Option<Equality>,
     /// Orders by each number of K, then of C.
     pub rankings: Vec<ElementRanking>,
@@ -182,28 +182,28 @@ impl Comparison {
         let numbers = numbers(&joints, compared);
         let choices = choices(&given, &joints, law.as_ref());
         let by_law = match compared {
-            Compared::AllFrfs => posteriors(&choices, &given, &numbers, options.independent),
+            Compared::AllFrfs => posteriors(&choices, &numbers, options.independent),
             _ => {
                 let estimates: Vec<Estimate> = joints.iter().map(|joint| stated(joint, compared)).collect();
                 vec![(1.0, Together::independent(&estimates, &numbers))]
             }
         };
         let together = with_spread(&by_law);
-        let tests = Tests::of((&given, &choices), law.is_some(), &numbers, (compared, options.independent));
         let estimates: Vec<Estimate> = joints.iter().map(|joint| stated(joint, compared)).collect();
         let cautions = Caution::of(&joints, &estimates, (compared, &numbers), &together);
         let all: Vec<usize> = (0..joints.len()).collect();
         let name = |joint: usize| joints[joint].name.as_str();
         let pair = |(a, b): (usize, usize)| {
-            let own = tests.of_pair((a, b));
-            let of_all = tests.of_all.as_ref().map(|by| (by, [a, b]));
-            let tested = of_all.or_else(|| own.as_ref().map(|by| (by, [0, 1])));
-            let pair = Pair::of(&by_law, &numbers, (a, b), [name(a), name(b)], tested);
-            let is_of_fits = compared == Compared::AllFrfs && pair.equality.is_none();
-            let laws_differ = is_of_fits.then(|| LawsDiffer::of(&given[a], &given[b])).flatten();
+            let is_of_fits = compared == Compared::AllFrfs;
+            let two = || [given[a].clone(), given[b].clone()];
+            let tested = is_of_fits.then(|| of_two(&two(), &numbers, options.independent)).flatten();
+            let pair = Pair::of(&by_law, &numbers, (a, b), [name(a), name(b)], tested.as_ref());
+            let is_untested = is_of_fits && pair.equality.is_none();
+            let laws_differ = is_untested.then(|| LawsDiffer::of(&given[a], &given[b])).flatten();
             Pair { laws_differ, ..pair }
         };
-        let pairs = all.iter().flat_map(|&a| (a + 1..joints.len()).map(move |b| (a, b))).map(pair).collect();
+        let pairs: Vec<Pair> =
+            all.iter().flat_map(|&a| (a + 1..joints.len()).map(move |b| (a, b))).map(pair).collect();
         let rankings = numbers.iter().enumerate().map(|(n, number)| {
             let values: Vec<f64> = all.iter().map(|&joint| together.value(joint, n)).collect();
             let covariance: Vec<f64> = all
@@ -220,7 +220,7 @@ impl Comparison {
             Specimens::of(kind, &together, &numbers, &named)
         });
         let (rankings, specimens) = (rankings.collect(), specimens.collect());
-        let equality = tests.of_all.as_ref().and_then(|by| Equality::by_law(by, &all, &numbers));
+        let equality = Equality::of_pairs(&pairs);
         Ok(Comparison {
             models: ModelRatios::all(&joints, &by_law, &numbers),
             relation,

@@ -31,22 +31,7 @@ impl LawsInCommon {
     pub(crate) fn of(joints: &[&Decomposed]) -> Option<Self> {
         let fits: Vec<&FiledJoint> =
             joints.iter().map(|joint| joint.fitted.as_ref()).collect::<Option<_>>()?;
-        let (first, others) = fits.split_first()?;
-        if fits.iter().any(|fit| fit.laws.is_empty()) {
-            return None;
-        }
-        let evidence = |law: &str| {
-            let of = |fit: &&FiledJoint| {
-                Some(fit.laws.iter().find(|entry| entry.law == law)?.probability.max(0.0).ln())
-            };
-            let sum = fits.iter().map(of).sum::<Option<f64>>()?;
-            Some(sum + ln_of_one_shape(&fits, law))
-        };
-        let laws: Vec<(String, f64)> =
-            first.laws.iter().filter_map(|entry| Some((entry.law.clone(), evidence(&entry.law)?))).collect();
-        let sum: f64 = laws.iter().map(|(_, evidence)| evidence.exp()).sum();
-        let odds = sum * (first.laws.len() as f64).powi(others.len() as i32);
-        Some(LawsInCommon { laws, probability: if odds.is_finite() { odds / (1.0 + odds) } else { 1.0 } })
+        in_common(&fits)
     }
 
     /// Whether the joints count as following laws of their own.
@@ -58,6 +43,25 @@ impl LawsInCommon {
     pub(crate) fn evidence(&self, law: &str) -> Option<f64> {
         self.laws.iter().find(|(name, _)| name == law).map(|(_, evidence)| *evidence)
     }
+}
+
+fn in_common(fits: &[&FiledJoint]) -> Option<LawsInCommon> {
+    let (first, others) = fits.split_first()?;
+    if fits.iter().any(|fit| fit.laws.is_empty()) {
+        return None;
+    }
+    let evidence = |law: &str| {
+        let of = |fit: &&FiledJoint| {
+            Some(fit.laws.iter().find(|entry| entry.law == law)?.probability.max(0.0).ln())
+        };
+        let sum = fits.iter().map(of).sum::<Option<f64>>()?;
+        Some(sum + ln_of_one_shape(fits, law))
+    };
+    let laws: Vec<(String, f64)> =
+        first.laws.iter().filter_map(|entry| Some((entry.law.clone(), evidence(&entry.law)?))).collect();
+    let sum: f64 = laws.iter().map(|(_, evidence)| evidence.exp()).sum();
+    let odds = sum * (first.laws.len() as f64).powi(others.len() as i32);
+    Some(LawsInCommon { laws, probability: if odds.is_finite() { odds / (1.0 + odds) } else { 1.0 } })
 }
 
 /// ln f of a law: by how much more probable one exponent or time of all makes what the tests tell of it, than one of each; 0 of laws without and where a file does not say how well it is known.
@@ -108,7 +112,10 @@ fn ln_of_one_shape(fits: &[&FiledJoint], law: &str) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ranking::normal;
     use crate::stiffness_file::{ComparedLaw, FollowedLaw, Uncertain};
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
     use serde_json::{Value, json};
 
     fn joint(laws: &[(&str, f64, Option<(f64, f64)>)]) -> FiledJoint {
@@ -164,5 +171,28 @@ mod tests {
     fn a_law_without_shape_has_no_factor() {
         let of = |p| joint(&[("viscous", p, None)]);
         assert_eq!(ln_of_one_shape(&[&of(0.5), &of(0.2)], "viscous"), 0.0);
+    }
+
+    #[test]
+    fn tests_of_one_law_are_seldom_said_to_be_of_two_and_those_of_two_exponents_often() {
+        // A fractional law, its exponent anywhere and told to 0.05, which a viscous one imitates the better the nearer to 1 it is.
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        let decomposed = |exponent: f64| {
+            let viscous = 0.5 * (-0.5 * ((1.0 - exponent) / 0.05).powi(2)).exp();
+            let laws = [("fractional", 1.0 - viscous, Some((exponent, 0.05))), ("viscous", viscous, None)];
+            joint(&laws)
+        };
+        let mut refuted = |apart: f64| {
+            let count = 2000;
+            let pair = |_: usize| {
+                let truth = 0.1 + (0.8 - apart) * random.random::<f64>();
+                let mut told = |truth: f64| (truth + 0.05 * normal(&mut random)).clamp(0.02, 0.98);
+                let (one, other) = (decomposed(told(truth)), decomposed(told(truth + apart)));
+                usize::from(in_common(&[&one, &other]).is_some_and(|common| common.is_refuted()))
+            };
+            (0..count).map(pair).sum::<usize>() as f64 / count as f64
+        };
+        let (same, apart) = (refuted(0.0), refuted(0.4));
+        assert!(same < 0.02 && apart > 0.95, "{same} {apart}");
     }
 }

@@ -83,9 +83,17 @@ impl Equality {
         Some(Equality { chi2, degrees, p_value: chi2_above(chi2, degrees) })
     }
 
+    /// Of several joints, by every two of them.
+    pub(crate) fn of_pairs(pairs: &[Pair]) -> Option<Self> {
+        let each: Vec<Equality> = pairs.iter().map(|pair| pair.equality).collect::<Option<_>>()?;
+        let most =
+            each.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value).then(b.chi2.total_cmp(&a.chi2)))?;
+        Some(Equality { p_value: (most.p_value * each.len() as f64).min(1.0), ..*most })
+    }
+
     /// The same by each of several laws: χ² is of the first, the p-value the mean of all, each as often as it is probable.
-    pub(crate) fn by_law(by: &ByLaw, joints: &[usize], numbers: &[Number]) -> Option<Self> {
-        let each = by.iter().map(|(weight, of)| Some((*weight, Equality::of_all(of, joints, numbers)?)));
+    pub(crate) fn by_law(by: &ByLaw, numbers: &[Number]) -> Option<Self> {
+        let each = by.iter().map(|(weight, of)| Some((*weight, Equality::of_all(of, &[0, 1], numbers)?)));
         let each: Vec<Option<(f64, Equality)>> = each.collect();
         let first = each.first().copied().flatten()?.1;
         let (sum, weight) = each
@@ -95,7 +103,7 @@ impl Equality {
         Some(Equality { p_value: if each.len() == 1 { first.p_value } else { sum / weight }, ..first })
     }
 
-    /// Of all numbers of several joints at once; nothing where it is not known how their errors go together.
+    /// Of all numbers of these joints at once; nothing where it is not known how their errors go together.
     fn of_all(together: &Together, joints: &[usize], numbers: &[Number]) -> Option<Self> {
         if !together.has_covariances {
             return None;
@@ -187,13 +195,13 @@ const DERIVED: [Derived; 2] = [
 ];
 
 impl Pair {
-    /// Of two joints of all, by each choice of their laws; `tested` is by what they are tested for being the same.
+    /// Of two joints of all, by each choice of their laws; `tested` is by what they, as the only two, are tested for being the same.
     pub(crate) fn of(
         by_law: &ByLaw,
         numbers: &[Number],
         (first, second): (usize, usize),
         names: [&str; 2],
-        tested: Option<(&ByLaw, [usize; 2])>,
+        tested: Option<&ByLaw>,
     ) -> Self {
         let part = |n: usize, (weight, together): &(f64, Together)| {
             let of = |a, b| together.covariance((a, n), (b, n));
@@ -213,10 +221,10 @@ impl Pair {
             first: names[0].to_owned(),
             second: names[1].to_owned(),
             numbers: all,
-            equality: tested.and_then(|(by, joints)| Equality::by_law(by, &joints, numbers)),
-            untold: tested.map_or_else(Vec::new, |(by, joints)| {
-                by.first().map_or_else(Vec::new, |(_, by)| undetermined_by_both(by, joints, numbers))
-            }),
+            equality: tested.and_then(|by| Equality::by_law(by, numbers)),
+            untold: tested
+                .and_then(|by| by.first())
+                .map_or_else(Vec::new, |(_, by)| undetermined_by_both(by, numbers)),
             laws_differ: None,
         }
     }
@@ -228,8 +236,8 @@ impl Pair {
 }
 
 /// The numbers of which two joints' FRFs tell nothing.
-fn undetermined_by_both(together: &Together, joints: [usize; 2], numbers: &[Number]) -> Vec<String> {
-    let is_undetermined = |n: usize| joints.iter().all(|&joint| together.std(joint, n) == 0.0);
+fn undetermined_by_both(together: &Together, numbers: &[Number]) -> Vec<String> {
+    let is_undetermined = |n: usize| [0, 1].iter().all(|&joint| together.std(joint, n) == 0.0);
     (0..numbers.len()).filter(|&n| is_undetermined(n)).map(|n| numbers[n].name()).collect()
 }
 

@@ -15,6 +15,7 @@
 //! physics forbids.
 
 use crate::bodies::{Part, connected, differing, likelihood, parts, shared, sharing_a_body, tests};
+use crate::by_law::Choice;
 use crate::common_law::groups as followers;
 use crate::{Apart, Decomposed, Estimate, Number, SharedBody, WhyApart};
 use jointscope_inference::{NormalEquations, birge_ratio};
@@ -86,10 +87,10 @@ impl Together {
         together
     }
 
-    /// Of joints fitted to all FRFs; `asked_apart` takes them all as tested on blocks of their own. Whether tests contradict each other on the blocks is asked of the joints as `given`, each by the law that
-    /// explains its own FRFs best: by a law that does not hold a fit bends the blocks to make up for it.
+    /// Of joints fitted to all FRFs; `asked_apart` takes them all as tested on blocks of their own. Whether tests contradict each other on the blocks is asked of the joints under every choice of their laws: by a
+    /// law that does not hold a fit bends the blocks to make up for it.
     pub(crate) fn of(
-        (joints, given): (&[Decomposed], &[Decomposed]),
+        (joints, choices): (&[Decomposed], &[Choice]),
         numbers: &[Number],
         asked_apart: bool,
     ) -> Self {
@@ -104,7 +105,7 @@ impl Together {
             let parts = parts(joints, &why);
             together.shared = shared(joints, &parts);
             let firsts: Vec<usize> = tests.iter().map(|test| test[0]).collect();
-            if let Some(odd) = together.most_at_odds(given, &firsts) {
+            if let Some(odd) = together.most_at_odds(choices, &firsts) {
                 let test = tests.iter().find(|test| test[0] == odd);
                 part(test.map_or(&[odd], Vec::as_slice), &mut why, WhyApart::Disagrees);
                 continue;

@@ -133,8 +133,7 @@ fn ratio_section(comparison: &Comparison) -> Section {
     }
     match comparison.equality.filter(|_| comparison.pairs.len() > 1) {
         Some(equality) => section.paragraph(format!(
-            "All joints the same, {} numbers tested at once: {}.",
-            equality.degrees,
+            "All joints the same: {}, that of the two that differ most times the number of pairs.",
             says::p_value(equality.p_value)
         )),
         None => section,

@@ -10,8 +10,8 @@ recordings are made on it, four FRFs with coherence of ten blows, 5 to 1200 Hz, 
     equal_loss   one joint twice, structural
     one_percent  the second 1 % stiffer
     five_percent the second 5 % stiffer
-    laws         a viscous joint and a structural one of the same K and, at its first resonance, the same losses
-    specimens    three: the joint twice and the one 1 % stiffer; and three of the same joint
+    laws         a viscous joint and a structural one of the same K, with the same losses at one frequency
+    specimens    one joint three times; in specimens_differ the third 1 % stiffer
 
 Of each: p of equality (share below 0.01 and 0.05, distance from uniform), the share said to contradict on the blocks, the share of 95 % intervals of ratios and differences that hold the truth, and how wide
 they are against the best possible: Cramér and Rao's bound of both joints, the law known and the blocks in common. Ends with status 1 where a share is farther from what is stated than chance takes it
@@ -20,6 +20,7 @@ one time in a thousand (of intervals: only if fewer hold).
 With --keep recordings and decompositions stay in DIR, and those that are there are used again.
 """
 import argparse
+import functools
 import json
 import os
 import pathlib
@@ -35,7 +36,7 @@ LINES = np.arange(5.0, 1200.1, 2.5)
 PAIRS = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")]
 NOISE = (0.003, 0.01, 0.03)
 BLOWS = 10
-#: Number of the recording, share by which K is larger, and whether its losses are structural.
+#: How much larger K is, and whether its losses are structural.
 RECORDINGS = {"a": (1.0, False), "b": (1.0, False), "c": (1.0, False), "one": (1.01, False), "five": (1.05, False), "loss": (1.0, True), "loss2": (1.0, True)}
 KINDS = {
     "equal": ["a", "b"],
@@ -149,7 +150,7 @@ class Blocks:
         return columns @ columns.T
 
     def bound(self, first, second):
-        """Least standard deviation of the logarithm of each ratio."""
+        """Least standard deviation of each ratio, in units of it."""
         n = len(self.std)
         information = np.zeros((12 + n, 12 + n))
         for at, name in enumerate((first, second)):
@@ -252,3 +253,63 @@ class Score:
 
 def is_refuted(pair):
     return pair["equality"] is not None and pair["equality"]["p_value"] < 0.05 or pair.get("laws_differ") is not None
+
+
+def unlikely(count, of, share):
+    """Whether chance makes a count so large less than one time in a thousand."""
+    return of > 0 and binom.sf(count - 1, of, share) < 1e-3
+
+
+def judged(kind, score):
+    """What of it is not right, in words."""
+    wrong = []
+    if unlikely(score.contradict, score.count, 0.01 * (2 if kind.startswith("specimens") else 1)):
+        wrong.append(f"{score.contradict} of {score.count} contradict on the blocks")
+    is_of_equal_joints = kind in ("equal", "equal_loss", "specimens")
+    if is_of_equal_joints:
+        small = [(bound, int(np.sum(np.array(score.p) < bound))) for bound in (0.01, 0.05)]
+        wrong += [f"{count} of {len(score.p)} equal joints have p < {bound}" for bound, count in small if unlikely(count, len(score.p), bound)]
+        if score.count - len(score.p) > 0.05 * score.count:
+            wrong.append(f"{score.count - len(score.p)} equal joints without a test")
+    elif score.refuted < 0.9 * score.count:
+        wrong.append(f"{score.count - score.refuted} of {score.count} are not found different")
+    # The intervals of one pair's numbers, and those of three specimens, go together: a count of a kind is no more than one of its pairs.
+    for what, all in score.holds.items():
+        for number, holds in all.items():
+            pairs = min(len(holds), score.count)
+            missed = int(round(np.mean(np.logical_not(holds)) * pairs)) if holds else 0
+            if unlikely(missed, pairs, 0.05):
+                wrong.append(f"{number}: {missed} of {pairs} intervals of the {what} do not hold")
+    return wrong
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("program", type=lambda path: str(pathlib.Path(path).resolve()))
+    parser.add_argument("--blocks", type=int, default=200)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", nargs="+", choices=KINDS, default=list(KINDS))
+    parser.add_argument("--keep", type=pathlib.Path)
+    arguments = parser.parse_args()
+    names = sorted({name for kind in arguments.only for name in KINDS[kind]}, key=list(RECORDINGS).index)
+    scores = {kind: Score() for kind in arguments.only}
+    with tempfile.TemporaryDirectory() as temporary:
+        for number in range(arguments.blocks):
+            folder = (arguments.keep or pathlib.Path(temporary)).resolve() / str(number)
+            blocks = Blocks(number, arguments.seed)
+            blocks.information = functools.lru_cache(None)(blocks.information)
+            decomposed(blocks, number, arguments.seed, arguments.program, folder, names)
+            for kind, score in scores.items():
+                score.add(blocks, KINDS[kind], compared(arguments.program, folder, KINDS[kind]))
+    wrong = []
+    for kind, score in scores.items():
+        print(score.says(kind))
+        found = judged(kind, score)
+        wrong += found
+        for each in found:
+            print(f"   NOT RIGHT: {each}")
+    sys.exit(1 if wrong else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,7 +1,7 @@
 //! Whether joints are the same, of files that state other laws or hold a C.
 
 use super::{compared, file};
-use jointscope_comparison::{Comparison, ComparisonOptions};
+use jointscope_comparison::{Comparison, ComparisonOptions, WhyApart};
 use jointscope_wording::comparison::{shared, tested};
 use serde_json::{Value, json};
 
@@ -104,6 +104,31 @@ fn joints_of_other_exponents_follow_no_one_fractional_law() {
 }
 
 #[test]
+fn tests_that_agree_on_the_blocks_by_one_law_do_not_contradict_each_other_by_another() {
+    // By the fractional law, a little more probable for both together, b would move the quantity by four deviations.
+    let a = by_law(("viscous", 0.58, [1000.0, 40.0]), ("fractional", 0.42, [1000.0, 40.0]));
+    let mut b = by_law(("fractional", 0.6, [1000.0, 40.0]), ("viscous", 0.4, [1000.0, 40.0]));
+    b["joint"]["likelihood"]["at"][2] = json!(8.0);
+    let found = both(&[a.clone(), b.clone()]);
+    assert_eq!(found.law.as_ref().unwrap().law, "fractional");
+    assert!(found.together.apart.is_empty() && !found.together.shared.is_empty());
+    // By either law they do.
+    b["joint"]["laws"][1]["likelihood"]["at"][2] = json!(8.0);
+    let found = both(&[a, b]);
+    assert!(found.together.apart.iter().any(|apart| apart.why == WhyApart::Disagrees));
+}
+
+#[test]
+fn three_joints_are_the_same_where_every_two_are() {
+    // K11 to ±1 each: the first two are 0.4 apart, the third is 3 and 3.4.
+    let of = |k: f64| by_law(("viscous", 1.0, [k, 40.0]), ("fractional", 1e-9, [k, 40.0]));
+    let found = both(&[of(1000.0), of(1000.4), of(997.0)]);
+    let p: Vec<f64> = found.pairs.iter().map(|pair| pair.equality.unwrap().p_value).collect();
+    assert!(p[0] > p[1] && p[1] > p[2], "{p:?}");
+    assert!((found.equality.unwrap().p_value - 3.0 * p[2]).abs() < 1e-12);
+}
+
+#[test]
 fn c_of_structural_joints_whose_bands_differ_is_compared_at_one_frequency() {
     // C of b, which is half as large at twice the frequency, to half of ±1.
     let own = |c: f64| ("structural", 0.9, [1000.0, c]);
@@ -178,10 +203,11 @@ fn slopes_that_differ_since_fits_end_at_other_places_of_one_valley_are_no_differ
     // K11 = 1000 + 2 q² is what the FRFs tell, q is not: fits that end at q = ±0.5 have slopes of ±2 and the same K11; by their own slopes K11 is 2 (q + 0.5) or −2 (q − 0.5) off.
     let at = |q: f64| {
         let slope = -4.0 * q;
-        let mut file = file(1000.5, 0.0, 5.0);
+        let k11 = 1000.0 + 2.0 * q * q;
+        let mut file = file(k11, 0.0, 5.0);
         let scale = 1e4;
         file["joint"]["likelihood"] = json!({
-            "elements": ["k11"], "at": [1000.5, q], "gradient": [0.0, 0.0],
+            "elements": ["k11"], "at": [k11, q], "gradient": [0.0, 0.0],
             "information": [[scale], [scale * slope, scale * slope * slope]],
         });
         file
@@ -189,6 +215,10 @@ fn slopes_that_differ_since_fits_end_at_other_places_of_one_valley_are_no_differ
     let found = both(&[at(0.5), at(-0.5)]);
     let equality = found.pairs[0].equality.unwrap();
     assert!(equality.chi2 < 1e-6, "{equality:?}");
+    // Three places of it: the mean of all slopes is that between no two of them.
+    let found = both(&[at(0.5), at(-0.5), at(0.3)]);
+    assert!(found.pairs.iter().all(|pair| pair.equality.unwrap().chi2 < 1e-6), "{:?}", found.pairs);
+    assert!(found.equality.unwrap().p_value > 0.99, "{:?}", found.equality);
     // A joint that is 0.1 stiffer with noise of 0.01 is told, whatever the slopes: 0.1²/(2·0.01²).
     let mut stiffer = at(-0.5);
     stiffer["joint"]["likelihood"]["at"][0] = json!(1000.6);
