@@ -6,7 +6,7 @@
 //! Only combinations of q count of which the tests tell something. Along the others a fit lies in a flat, curved valley: where in it the fit ends is known to a few tenths of the prior's
 //! deviation, since χ² hardly changes there, and not to the hundredth that A leaves it.
 
-use crate::by_law::Choice;
+use crate::choices::Choice;
 use crate::normal::chi2_above;
 use crate::{Decomposed, Together};
 use jointscope_linalg::{Cholesky, generalized_symmetric_eigen};

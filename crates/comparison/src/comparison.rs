@@ -1,7 +1,8 @@
 //! Several decompositions side by side: ratios and orders of their elements, and what to be careful about.
 
-use crate::by_law::{choices, posteriors};
-use crate::tests_of_equality::{ByLaw, of_two};
+use crate::by_law::{ByLaw, posteriors};
+use crate::choices::choices;
+use crate::tests_of_equality::of_two;
 use crate::{
     Caution, Compared, Decomposed, ELEMENTS, Equality, Estimate, FiledJoint, Kind, LawOfAll, LawsDiffer,
     ModelRatios, Number, Pair, Ranking, Specimens, Together,

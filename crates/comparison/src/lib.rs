@@ -30,6 +30,7 @@ mod at_once;
 mod bodies;
 mod by_law;
 mod caution;
+mod choices;
 mod common_law;
 mod compared;
 mod comparison;

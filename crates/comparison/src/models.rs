@@ -1,6 +1,6 @@
 //! Joints of models over measured ones: SIM/EXP and FEM/EXP, number by number.
 
-use crate::tests_of_equality::ByLaw;
+use crate::by_law::ByLaw;
 use crate::{Decomposed, Kind, Number, Pair, Ratio, Source};
 use serde::Serialize;
 

@@ -1,8 +1,8 @@
 //! Two joints: by how much they differ, in what ratio, and whether they are the same.
 
+use crate::by_law::ByLaw;
 use crate::laws_in_common::LawsInCommon;
 use crate::normal::{chi2_above, larger_magnitude, mahalanobis, mixed_interval, mixed_ratio_interval};
-use crate::tests_of_equality::ByLaw;
 use crate::{Decomposed, Kind, Number, Together};
 use jointscope_inference::{SIGNIFICANT, Z95, interval95};
 use serde::Serialize;

@@ -6,12 +6,10 @@
 //! Where several laws are probable for both, the p-value is the mean of those under each, as often as it is probable.
 
 use crate::at_law::with_free_damping;
-use crate::by_law::{Choice, choices};
+use crate::by_law::ByLaw;
+use crate::choices::{Choice, choices};
 use crate::one_slope::of_one_slope;
 use crate::{Decomposed, LawOfAll, Number, Together};
-
-/// The posterior of all joints under each choice of their laws and how probable it is, the laws compared at first.
-pub(crate) type ByLaw = Vec<(f64, Together)>;
 
 /// The Gaussians of which it is tested whether two joints are the same; nothing where they have no law in common.
 pub(crate) fn of_two(two: &[Decomposed; 2], numbers: &[Number], independent: bool) -> Option<ByLaw> {

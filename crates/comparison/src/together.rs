@@ -2,8 +2,7 @@
 //!
 //! Each fit tells of its joint and of the fixture's quantities what a Gaussian likelihood does. Of joints tested on the same blocks these quantities are the same:
 //! the likelihoods are multiplied, with one set of quantities, whose prior enters once. The posterior then has both joints, and what the blocks' tolerances do to one they do to
-//! the other: it cancels in their difference. What the fits get wrong besides is added to each joint by itself, what laws over frequency differ by to all that follow one
-//! together ([`by_law`](crate::by_law)).
+//! the other: it cancels in their difference. What the fits get wrong besides is added to each joint by itself, what laws over frequency differ by to all that follow one.
 //!
 //! Where the common quantities are farther from what is stated than chance takes them, the posterior is widened by Birge's ratio, as that of one fit is: each group of joints
 //! that bodies connect by its own.
@@ -15,7 +14,7 @@
 //! physics forbids.
 
 use crate::bodies::{Part, connected, differing, likelihood, parts, shared, sharing_a_body, tests};
-use crate::by_law::Choice;
+use crate::choices::Choice;
 use crate::common_law::groups as followers;
 use crate::{Apart, Decomposed, Estimate, Number, SharedBody, WhyApart};
 use jointscope_inference::{NormalEquations, birge_ratio};
