@@ -118,13 +118,16 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use serde_json::{Value, json};
 
-    fn joint(laws: &[(&str, f64, Option<(f64, f64)>)]) -> FiledJoint {
+    /// Name and probability of a law, its exponent or time with its deviation.
+    type Law<'a> = (&'a str, f64, Option<(f64, f64)>);
+
+    fn joint(laws: &[Law]) -> FiledJoint {
         let zero = [[0.0; 2]; 2];
         let covariance = [[0.0; 6]; 6];
         let file = json!({"stiffness": zero, "damping": zero, "covariance": covariance});
         let mut fit: FiledJoint = serde_json::from_value(file).unwrap();
         fit.follows = Some(FollowedLaw::plain(laws[0].0, laws[0].1, 1.0 / TAU));
-        let entry = |(law, probability, shape): &(&str, f64, Option<(f64, f64)>)| {
+        let entry = |(law, probability, shape): &Law| {
             let shape = shape.map(|(value, std)| Uncertain { value, std });
             let is_time = law.starts_with("standard");
             ComparedLaw {
