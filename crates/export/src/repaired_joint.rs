@@ -6,7 +6,7 @@ use jointscope_comparison::Matrix;
 use jointscope_fixture::{
     Damping, Dof, Effect, EffectKind as Kind, Fixture, FixtureError, Joint, Place, Quantity,
 };
-use jointscope_lumped::JointElement;
+use jointscope_lumped::{Delta, JointElement};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -92,13 +92,11 @@ impl<'a> RepairedJoint<'a> {
         let mut stiffness = matrix(&|i, j| with(i, j).re);
         let mut damping = matrix(&|i, j| without(i, j).im / omega);
         let structural = matrix(&|i, j| with(i, j).im - without(i, j).im);
-        for effect in &self.effects {
+        let beside = |e: &&&Effect| matches!(e.kind, Kind::ParallelStiffness | Kind::Springpot);
+        for effect in self.effects.iter().filter(beside) {
+            let Some(delta) = Delta::of(self.fixture, effect) else { continue };
             let i = usize::from(effect.dof == Some(Dof::Rotation));
-            let value = match effect.kind {
-                Kind::ParallelStiffness => Complex64::new(effect.value(0), omega * effect.value(1)),
-                Kind::Springpot => s.powf(effect.value(1)) * effect.value(0),
-                _ => continue,
-            };
+            let value = delta.at(s);
             stiffness[i][i] += value.re;
             damping[i][i] += value.im / omega;
         }

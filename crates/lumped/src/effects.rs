@@ -107,7 +107,7 @@ fn footing<'a>(fixture: &'a Fixture, effect: &'a Effect) -> [Option<Action<'a>>;
 }
 
 /// What an effect does; `None` where its place does not exist.
-fn action<'a>(fixture: &'a Fixture, effect: &'a Effect) -> Option<Action<'a>> {
+pub(crate) fn action<'a>(fixture: &'a Fixture, effect: &'a Effect) -> Option<Action<'a>> {
     let value = |index: usize| effect.value(index);
     let on_body = |law: PointLaw| {
         let body = body_of(fixture, &effect.place)?;

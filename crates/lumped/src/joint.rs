@@ -10,6 +10,7 @@ pub(crate) use two_ends::TwoEnds;
 use crate::effects::{Action, Change, Interface, actions};
 use crate::lanes::Lines;
 use crate::nominal_stiffness::nominal_stiffness;
+use crate::point_law::relaxed;
 use heavy_beam::HeavyBeam;
 use jointscope_fixture::{Damping, Dof, Fixture, Joint, JointLaw};
 use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
@@ -186,8 +187,7 @@ impl JointDynamics {
     fn modulus<T: Lines>(&self, s: T) -> T {
         let mut factor = T::constant(Complex64::new(1.0, self.base_loss + self.loss));
         for &(ratio, time) in &self.relaxations {
-            let turned = s * time;
-            factor = factor + turned * (T::ONE + turned).reciprocal() * ratio;
+            factor = factor + relaxed(s, time) * ratio;
         }
         factor * self.factor
     }

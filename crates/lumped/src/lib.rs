@@ -15,6 +15,7 @@
 //! * [`MeasuringChain`]: what stands between the structure and a recorded value;
 //! * [`ModelledTest`]: the model with a test's channels; [`ContinuedFrfs`], its FRFs at complex frequencies; [`Tangent`], what small
 //!   changes of the fixture make of them; [`Vicinity`], tests of fixtures beside one another for differences;
+//! * [`Delta`]: what one effect makes of the scalar through which it acts, over frequency;
 //! * [`synthesize`], [`accelerances`]: the FRFs an analyser would record (eq 18, 41), measuring-chain effects included.
 //!
 //! ```
@@ -39,6 +40,7 @@ mod assembly;
 mod bar;
 mod chain;
 mod condensed;
+mod delta;
 mod denominator;
 mod effects;
 mod far_modes;
@@ -65,11 +67,13 @@ mod vicinity;
 
 pub use assembly::Assembly;
 pub use chain::{Instrument, MeasuringChain, Reading, channel_station, signal_power, window_decay};
+pub use delta::Delta;
 pub use effects::SignalFilter;
 pub use joint_element::JointElement;
 pub use lanes::{Lanes, Lines};
 pub use model::Model;
 pub use nominal_stiffness::nominal_stiffness;
+pub use point_law::PointLaw;
 pub use receptances::Receptances;
 pub use state_space::StateSpace;
 pub use station::Station;

@@ -4,15 +4,32 @@ use crate::lanes::Lines;
 
 /// The dynamic stiffness that one thing adds through one station.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum PointLaw {
+pub enum PointLaw {
     /// k + s c.
-    Spring { stiffness: f64, damping: f64 },
+    Spring {
+        /// k, N/m or N·m/rad.
+        stiffness: f64,
+        /// c, N·s/m or N·m·s/rad.
+        damping: f64,
+    },
     /// s² m.
     Mass(f64),
     /// k sᵅ, between a spring and a dashpot.
-    Springpot { stiffness: f64, exponent: f64 },
+    Springpot {
+        /// k.
+        stiffness: f64,
+        /// α.
+        exponent: f64,
+    },
     /// A mass on a spring: s² m (ω_a² + 2ζω_a s)/(s² + 2ζω_a s + ω_a²).
-    Resonator { mass: f64, omega: f64, ratio: f64 },
+    Resonator {
+        /// m, kg.
+        mass: f64,
+        /// ω_a, rad/s.
+        omega: f64,
+        /// ζ.
+        ratio: f64,
+    },
 }
 
 impl PointLaw {
@@ -35,4 +52,11 @@ impl PointLaw {
             }
         }
     }
+}
+
+/// sτ/(1 + sτ): what relaxes in a time τ holds nothing of a slow motion and all of a fast one.
+#[inline(always)]
+pub(crate) fn relaxed<T: Lines>(s: T, time: f64) -> T {
+    let turned = s * time;
+    turned * (T::ONE + turned).reciprocal()
 }

@@ -8,7 +8,6 @@ mod fixture_view;
 mod frfs;
 mod glance;
 mod judgement;
-mod law;
 mod misfit;
 mod model_error;
 mod noise;

@@ -2,6 +2,7 @@
 
 use super::Site;
 use jointscope_fixture::Dof;
+use jointscope_lumped::{Delta, PointLaw};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -11,6 +12,13 @@ pub(super) struct Line {
     pub omega: f64,
     /// Accelerance of a response's own position.
     pub driving: Complex64,
+}
+
+impl Line {
+    /// s = iω.
+    fn s(self) -> Complex64 {
+        Complex64::new(0.0, self.omega)
+    }
 }
 
 /// A law: the missing component over frequency by a few parameters, the first of which is an amplitude. Of what is in series it is the
@@ -61,7 +69,10 @@ fn sensors(_: f64, _: f64) -> Vec<Vec<f64>> {
     [1e-3, 5e-3, 2e-2, 0.1].map(|mass| vec![mass]).to_vec()
 }
 
-const I: Complex64 = Complex64::I;
+/// k + iωc.
+fn spring(stiffness: f64, damping: f64) -> Delta {
+    Delta::Stiffness(PointLaw::Spring { stiffness, damping })
+}
 
 const MASS: Law = Law {
     name: "a mass",
@@ -69,7 +80,7 @@ const MASS: Law = Law {
     parameters: &[("mass", "kg")],
     proportional: true,
     starts: one,
-    value: |line, p| Complex64::new(-line.omega * line.omega * p[0], 0.0),
+    value: |line, p| Delta::Stiffness(PointLaw::Mass(p[0])).at(line.s()),
     stated: same,
 };
 const SPRING: Law = Law {
@@ -78,7 +89,7 @@ const SPRING: Law = Law {
     parameters: &[("stiffness", "N/m")],
     proportional: true,
     starts: one,
-    value: |_, p| Complex64::new(p[0], 0.0),
+    value: |line, p| spring(p[0], 0.0).at(line.s()),
     stated: same,
 };
 const DASHPOT: Law = Law {
@@ -87,7 +98,7 @@ const DASHPOT: Law = Law {
     parameters: &[("damping", "N*s/m")],
     proportional: true,
     starts: one,
-    value: |line, p| I * line.omega * p[0],
+    value: |line, p| spring(0.0, p[0]).at(line.s()),
     stated: same,
 };
 const SPRING_AND_DASHPOT: Law = Law {
@@ -97,7 +108,7 @@ const SPRING_AND_DASHPOT: Law = Law {
     proportional: true,
     // A dashpot in shares of the spring over the band's highest line.
     starts: |_, high| [0.0, 0.01, 0.1, 1.0].map(|turn| vec![1.0, turn / high]).to_vec(),
-    value: |line, p| p[0] * (1.0 + I * line.omega * p[1]),
+    value: |line, p| p[0] * spring(1.0, p[1]).at(line.s()),
     stated: |p| vec![p[0], p[0] * p[1]],
 };
 const RESONATOR: Law = Law {
@@ -111,9 +122,7 @@ const RESONATOR: Law = Law {
         if !(0.0..1.0).contains(&p[2]) {
             return Complex64::new(f64::NAN, f64::NAN);
         }
-        let (omega, own) = (line.omega, p[1].exp());
-        let spring = own * own + I * (2.0 * p[2] * own * omega);
-        -omega * omega * p[0] * spring / (spring - omega * omega)
+        Delta::Stiffness(PointLaw::Resonator { mass: p[0], omega: p[1].exp(), ratio: p[2] }).at(line.s())
     },
     stated: |p| vec![p[0], p[1].exp() / TAU, p[2]],
 };
@@ -132,7 +141,7 @@ const YIELDING_AND_LOSSY: Law = Law {
     parameters: &[("stiffness", "N/m"), ("damping", "N*s/m")],
     proportional: true,
     starts: |_, high| [0.01, 0.1, 0.5].map(|turn| vec![1.0, turn / high]).to_vec(),
-    value: |line, p| p[0] / (1.0 + I * line.omega * p[1]),
+    value: |line, p| p[0] / spring(1.0, p[1]).at(line.s()),
     stated: |p| vec![1.0 / p[0], p[1] / p[0]],
 };
 const YIELDING_ROTATION: Law = Law { parameters: &[("stiffness", "N*m/rad")], ..YIELDING };
@@ -153,7 +162,7 @@ const DELAY: Law = Law {
     parameters: &[("seconds", "s")],
     proportional: false,
     starts: delays,
-    value: |line, p| (-I * line.omega * p[0]).exp() - 1.0,
+    value: |line, p| Delta::Signal { gain: 1.0, delay: p[0] }.at(line.s()),
     stated: same,
 };
 const GAIN_AND_DELAY: Law = Law {
@@ -165,7 +174,7 @@ const GAIN_AND_DELAY: Law = Law {
         let factors = [0.7, 1.0, 1.4];
         factors.iter().flat_map(|g| [-0.3, 0.0, 0.3].map(|turn| vec![*g, turn / high])).collect()
     },
-    value: |line, p| p[0] * (-I * line.omega * p[1]).exp() - 1.0,
+    value: |line, p| Delta::Signal { gain: p[0], delay: p[1] }.at(line.s()),
     stated: same,
 };
 const SENSOR_MASS: Law = Law {
@@ -201,7 +210,7 @@ const LOSS: Law = Law {
     parameters: &[("loss_factor", "")],
     proportional: true,
     starts: one,
-    value: |_, p| I * p[0],
+    value: |line, p| Delta::Loss(p[0]).at(line.s()),
     stated: same,
 };
 const RELAXATION: Law = Law {
@@ -210,10 +219,7 @@ const RELAXATION: Law = Law {
     parameters: &[("ratio", ""), ("time", "s")],
     proportional: true,
     starts: times,
-    value: |line, p| {
-        let turn = I * line.omega * p[1].exp();
-        p[0] * turn / (1.0 + turn)
-    },
+    value: |line, p| Delta::Relaxation { ratio: p[0], time: p[1].exp() }.at(line.s()),
     stated: |p| vec![p[0], p[1].exp()],
 };
 

@@ -1,12 +1,13 @@
 //! δ(ω): the missing component as measured, line by line, and the law that names it.
 
 use jointscope_diagnosis::{Finding, LawFit, LawParameter, LineEstimate, Location, Site};
-use jointscope_fixture::EffectKind;
+use jointscope_fixture::{EffectKind, Fixture};
 use jointscope_inference::Z95;
+use jointscope_lumped::Delta;
 use jointscope_wording::{Says, effect_name};
 use num_complex::Complex64;
+use std::f64::consts::TAU;
 
-use super::law::Law;
 use super::subject::Subject;
 use crate::format::{NOT_DETERMINED, quantity, significant};
 use crate::plot::{Axis, Plot, Role, Span, YRange};
@@ -37,10 +38,7 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
          95 % band are what was measured of the missing component; the curve is the law of the finding, with its fitted parameters.",
     );
     for (index, finding, location) in &measured {
-        let law = Law::of(finding, &location.site, subject.fixture);
-        let curve = law
-            .map(|law| (law.formula, known(location).map(|d| law.at(d.frequency)).collect()))
-            .or_else(|| roving(finding, location));
+        let curve = of_effect(finding, location, subject.fixture).or_else(|| roving(finding, location));
         section = section
             .plots(2, panes(&format!("{}. {}", index + 1, effect_name(&finding.effect)), location, curve));
         section = with_laws(section, location);
@@ -58,6 +56,14 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
 /// δ on the lines where it can be drawn.
 fn known(location: &Location) -> impl Iterator<Item = &LineEstimate> {
     location.delta.iter().filter(|d| d.frequency.is_finite() && d.std.is_finite() && d.value.is_finite())
+}
+
+/// The law of a finding with its parameters.
+fn of_effect(finding: &Finding, location: &Location, fixture: &Fixture) -> Option<Curve> {
+    let formula = finding.effect.kind.spec().words.law?;
+    let delta = Delta::of(fixture, &finding.effect)?;
+    let at = |line: &LineEstimate| delta.at(Complex64::new(0.0, TAU * line.frequency));
+    Some((formula, known(location).map(at).collect()))
 }
 
 /// The law of a sensor that is moved about depends on the accelerance of its own seat: taken as it was fitted to δ.
