@@ -38,7 +38,7 @@ impl Coverage {
     pub(crate) fn of<'a>(judged: impl Iterator<Item = &'a Judged>) -> Self {
         let mut intervals = Vec::new();
         for judged in judged {
-            for (hidden, bounds) in judged.truth.effects().iter().zip(&judged.evidence.bounds) {
+            for (hidden, bounds) in judged.truth.effects().iter().zip(&judged.fits.bounds) {
                 let name = Name::of(hidden);
                 let mut own = judged.findings().iter().filter(|found| Name::of(&found.effect) == name);
                 let Some(found) = own.next() else { continue };

@@ -191,7 +191,7 @@ fn smallest(singles: &[&Judged], size: f64) -> Vec<Smallest> {
                 .iter()
                 .filter_map(|judged| {
                     let effect = judged.truth.effects().first()?;
-                    let bounds = judged.evidence.bounds.first()?;
+                    let bounds = judged.fits.bounds.first()?;
                     let bound = (*bounds.get(strength::leading_parameter(effect.kind))?)?;
                     ((effect.kind, effect.dof) == (kind, dof))
                         .then(|| size.sqrt() * strength_deviation(effect, bound))

@@ -1,7 +1,7 @@
 //! How a case is measured: lines, hammer, and FRFs that nobody records.
 
 use jointscope_fixture::Fixture;
-use jointscope_rig::HammerTest;
+use jointscope_rig::HammerSetup;
 use jointscope_spectra::{FrfPair, SpectraError, SpectralLines};
 use rand::seq::SliceRandom;
 use rand::{Rng, RngExt};
@@ -17,8 +17,8 @@ pub(crate) fn recorded_lines() -> Result<SpectralLines, SpectraError> {
 }
 
 /// How a case is measured.
-pub(crate) fn drawn_hammer(random: &mut impl Rng, seed: u64) -> HammerTest {
-    HammerTest {
+pub(crate) fn drawn_hammer(random: &mut impl Rng, seed: u64) -> HammerSetup {
+    HammerSetup {
         averages: [5, 8, 10, 16, 20][random.random_range(0..5)],
         noise_response: random.random_range(0.004..0.015),
         noise_force: random.random_range(0.0005..0.0015),

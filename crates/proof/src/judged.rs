@@ -33,7 +33,7 @@ pub trait Judgeable: Sealable {
     /// The hidden effects.
     fn effects(&self) -> &[Effect];
     /// What independent fits say of an answer; `None` where recording or answer cannot be evaluated.
-    fn evidence(&self, case: &Case, answer: &Answer) -> Option<Evidence>;
+    fn independent_fits(&self, case: &Case, answer: &Answer) -> Option<IndependentFits>;
 
     /// What was hidden, in words.
     fn hidden(&self) -> String {
@@ -50,12 +50,12 @@ pub struct Judged<T = crate::Truth> {
     /// What was answered.
     pub answer: Result<Answer, NoAnswer>,
     /// What independent fits say of both.
-    pub evidence: Evidence,
+    pub fits: IndependentFits,
 }
 
 /// Objectives (χ² and squared departures of the quantities) and errors by which an answer is judged.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Evidence {
+pub struct IndependentFits {
     /// Of the refitted fixture that was handed back.
     pub refitted: f64,
     /// Of the repaired fixture that was handed back.
@@ -89,11 +89,11 @@ fn by_name<S: Serializer>(others: &BTreeMap<Name, f64>, serializer: S) -> Result
     serializer.collect_seq(others.iter().map(entry))
 }
 
-impl Evidence {
+impl IndependentFits {
     /// Objectives of what was handed back; those of the truth are still to come.
     pub(crate) fn of_answer(judge: &Judge, answer: &Answer) -> Option<Self> {
         let (refitted, repaired) = (judge.objective(&answer.refitted)?, judge.objective(&answer.repaired)?);
-        Some(Evidence { refitted, repaired, ..Evidence::default() })
+        Some(IndependentFits { refitted, repaired, ..IndependentFits::default() })
     }
 }
 
@@ -113,15 +113,15 @@ impl<T: Judgeable + Sync> Judged<T> {
         progress: impl Fn(usize) + Sync,
     ) -> Vec<Self> {
         let work: Vec<_> = cases.iter().zip(&truths).zip(answers.all()).collect();
-        let evidence = on_workers(&work, threads, progress, |((case, truth), answer)| {
-            answer.as_ref().ok().and_then(|answer| truth.evidence(case, answer))
+        let fits = on_workers(&work, threads, progress, |((case, truth), answer)| {
+            answer.as_ref().ok().and_then(|answer| truth.independent_fits(case, answer))
         });
-        let judged = truths.into_iter().zip(answers.all()).zip(evidence);
+        let judged = truths.into_iter().zip(answers.all()).zip(fits);
         judged
-            .map(|((truth, answer), evidence)| Judged {
+            .map(|((truth, answer), fits)| Judged {
                 truth,
                 answer: answer.clone(),
-                evidence: evidence.flatten().unwrap_or_default(),
+                fits: fits.flatten().unwrap_or_default(),
             })
             .collect()
     }
@@ -146,7 +146,7 @@ impl<T: Judgeable> Judged<T> {
     /// What the hidden physics costs a fit that does without: Δχ², of two effects the smaller one's. A refit that ended in a false
     /// minimum does not make an effect look larger than it is.
     pub fn size(&self) -> f64 {
-        let Evidence { refitted, truth, without, .. } = &self.evidence;
+        let IndependentFits { refitted, truth, without, .. } = &self.fits;
         without.iter().copied().fold(*refitted, f64::min) - truth
     }
 
@@ -177,7 +177,7 @@ impl<T: Judgeable> Judged<T> {
 
     /// Faults of the repaired fixture, whatever was hidden.
     pub(crate) fn faults_of_prediction(&self) -> Vec<String> {
-        let errors = [("unseen FRFs worse", self.evidence.unseen), ("held-out lines worse", self.held_out())];
+        let errors = [("unseen FRFs worse", self.fits.unseen), ("held-out lines worse", self.held_out())];
         let worse = errors.into_iter().filter(|(_, errors)| errors.is_some_and(is_worse));
         worse.filter(|_| !self.findings().is_empty()).map(|(fault, _)| fault.to_owned()).collect()
     }
@@ -210,8 +210,8 @@ impl<T: Judgeable> Judged<T> {
                 "found": named(self.findings(), &is_right),
                 "visible": self.is_visible(),
                 "faults": faults,
-                "objectives": self.evidence,
-                "unseen": self.evidence.unseen,
+                "objectives": self.fits,
+                "unseen": self.fits.unseen,
             }),
             faults,
         }

@@ -4,7 +4,7 @@ use crate::case_line::errors;
 use crate::judge::Judge;
 use crate::judged::error_on;
 use crate::objective::FAR_BEYOND_TOLERANCE;
-use crate::{AS_GOOD, Answer, Case, CaseLine, Evidence, Found, Judgeable, Judged, Name, Role, Truth};
+use crate::{AS_GOOD, Answer, Case, CaseLine, Found, IndependentFits, Judgeable, Judged, Name, Role, Truth};
 use jointscope_fixture::{Effect, Fixture};
 use std::collections::BTreeMap;
 
@@ -30,31 +30,31 @@ impl Judgeable for Truth {
         Truth::hidden(self)
     }
 
-    fn evidence(&self, case: &Case, answer: &Answer) -> Option<Evidence> {
+    fn independent_fits(&self, case: &Case, answer: &Answer) -> Option<IndependentFits> {
         let judge = Judge::of(case)?;
         let unseen = self.unseen().ok()?;
-        let mut evidence = Evidence {
+        let mut fits = IndependentFits {
             unseen: error_on(&unseen, &answer.refitted)
                 .zip(error_on(&unseen, &answer.repaired))
                 .map(Into::into),
             beyond_tolerance: judge.beyond_tolerance(&answer.repaired, FAR_BEYOND_TOLERANCE),
             without: judge.without_each(&self.fixture),
-            ..Evidence::of_answer(&judge, answer)?
+            ..IndependentFits::of_answer(&judge, answer)?
         };
         if self.outside.is_some() {
             // No fixture describes it: the truth is what the hammer would have measured without noise.
             let (pairs, lines) = (judge.observation.pairs(), judge.observation.lines());
             let exact = self.frfs(pairs, lines, jointscope_rig::Instrument::AsDescribed).ok()?;
-            evidence.truth = judge.objective_of(exact.all_values(), &self.fixture);
+            fits.truth = judge.objective_of(exact.all_values(), &self.fixture);
         } else {
             let reference = judge.best(&self.fixture)?;
-            evidence.truth = reference.objective;
-            evidence.bounds = reference.bounds;
+            fits.truth = reference.objective;
+            fits.bounds = reference.bounds;
         }
         if self.role.is_of_one() {
-            evidence.others = others(self, answer, evidence.repaired, &judge);
+            fits.others = others(self, answer, fits.repaired, &judge);
         }
-        Some(evidence)
+        Some(fits)
     }
 }
 
@@ -87,8 +87,8 @@ pub(crate) fn others(truth: &Truth, answer: &Answer, repaired: f64, judge: &Judg
 impl Judged {
     /// Whether a name counts as right beside one hidden effect: it is the truth, or fits as well.
     pub fn accepts(&self, name: &Name) -> bool {
-        let as_good = |objective: &f64| *objective <= self.evidence.truth + AS_GOOD;
-        self.hidden().contains(name) || self.evidence.others.get(name).is_some_and(as_good)
+        let as_good = |objective: &f64| *objective <= self.fits.truth + AS_GOOD;
+        self.hidden().contains(name) || self.fits.others.get(name).is_some_and(as_good)
     }
 
     /// Whether all that was hidden was found, under its names or by a fit that is as good with as many effects.
@@ -118,7 +118,7 @@ impl Judged {
 
     /// Whether the repaired fixture fits as well as the truth although its names are not what was hidden.
     pub(crate) fn cannot_be_told(&self) -> bool {
-        self.evidence.repaired <= self.evidence.truth + AS_GOOD
+        self.fits.repaired <= self.fits.truth + AS_GOOD
     }
 
     /// Whether a name is given with certainty to physics that has none, and the fit tells it from the truth.
@@ -136,7 +136,7 @@ impl Judged {
 
     /// Whether the fit with all the right names, or of a null, ended higher than the fit about the truth: a false minimum.
     pub(crate) fn stopped_short(&self) -> bool {
-        self.names_all_and_nothing_else() && self.evidence.repaired > self.evidence.truth + SHORT
+        self.names_all_and_nothing_else() && self.fits.repaired > self.fits.truth + SHORT
     }
 
     /// What went wrong, in a phrase each; empty where nothing did. Hidden effects that do not show are not asked for.
@@ -168,8 +168,8 @@ impl Judged {
         let fresh = if self.truth.fresh { ", fresh" } else { "" };
         line.role = format!("{}{fresh}", self.truth.role.name());
         let Ok(answer) = &self.answer else { return line };
-        let Evidence { refitted, repaired, truth, others, without, unseen, beyond_tolerance, .. } =
-            &self.evidence;
+        let IndependentFits { refitted, repaired, truth, others, without, unseen, beyond_tolerance, .. } =
+            &self.fits;
         let [stated_refitted, stated_repaired] = answer.objectives;
         line.details.push(format!(
             "objective: refitted {refitted:.1}, repaired {repaired:.1}, fit from the truth {truth:.1} \

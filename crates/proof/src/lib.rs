@@ -11,7 +11,7 @@
 //! | making cases | [`Plan`], [`Case`], [`Truth`], [`Role`], [`SealedTruths`] |
 //! | cases by other routes | [`Plan::draw_routes`], [`Questions`], [`RouteTruth`], [`Replies`], [`Opened`]; [`SolidTruth`]; [`StruckCase`], [`StruckTruth`]; [`AsIsTruth`]; [`ModalErrorsTruth`]; [`LumpedTruth`] |
 //! | answers | [`Answers`], [`Answer`], [`Reply`], [`Found`], [`Timing`] |
-//! | judging | [`Judged`], [`Evidence`], [`Reference`], [`Name`] |
+//! | judging | [`Judged`], [`IndependentFits`], [`Reference`], [`Name`] |
 //! | what else one could do | [`Baseline`], [`Methods`] |
 //! | limits of a test | [`Limits`] |
 //! | scores | [`Score`], [`Rate`], [`Share`], [`Reliability`], [`Confusion`], [`Detection`], [`Coverage`] |
@@ -87,7 +87,7 @@ pub use generate::{FAMILIES, HIDDEN_KINDS, Plan};
 pub use generation_error::GenerationError;
 pub use jointscope_rig::Family;
 pub use jointscope_rig::universal_file::{FileError, Precision};
-pub use judged::{AS_GOOD, Evidence, Judgeable, Judged, PLAIN, VISIBLE};
+pub use judged::{AS_GOOD, IndependentFits, Judgeable, Judged, PLAIN, VISIBLE};
 pub use limits::{Alike, Limits, SmallestShown};
 pub use name::Name;
 pub(crate) use name::describe;

@@ -13,7 +13,7 @@ use jointscope_fixture::{Fixture, Quantity, Spread};
 use jointscope_pipeline::{Measurement, Options, Outcome, diagnose};
 use jointscope_plan::{Measure, Plan as TestPlan, PlanOptions, Remaining, SURE, weighed_by};
 use jointscope_rig::{
-    Family, HammerTest, Instrument, StructureError, drawn_within_tolerance, frfs, generator, random_effect,
+    Family, HammerSetup, Instrument, StructureError, drawn_within_tolerance, frfs, generator, random_effect,
 };
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet};
 use rand::seq::SliceRandom;
@@ -228,7 +228,7 @@ struct PlanningCase {
     believed: Fixture,
     truth: Fixture,
     pairs: Vec<FrfPair>,
-    hammer: HammerTest,
+    hammer: HammerSetup,
 }
 
 impl PlanningCase {
@@ -267,7 +267,7 @@ impl PlanningCase {
         round: u64,
     ) -> Result<FrfSet, GenerationError> {
         let clean = frfs(structure, pairs, &recorded_lines()?, Instrument::AsDescribed)?;
-        let hammer = HammerTest { seed: self.hammer.seed.wrapping_add(round), ..self.hammer };
+        let hammer = HammerSetup { seed: self.hammer.seed.wrapping_add(round), ..self.hammer };
         Ok(hammer.measure(&clean)?)
     }
 
@@ -296,7 +296,7 @@ impl PlanningCase {
                 again(&believed, recorded)
             }
             Measure::Averages { times } => {
-                let hammer = HammerTest { averages: self.hammer.averages * (times - 1), ..self.hammer };
+                let hammer = HammerSetup { averages: self.hammer.averages * (times - 1), ..self.hammer };
                 let more = PlanningCase {
                     hammer,
                     truth: self.truth.clone(),

@@ -189,7 +189,7 @@ fn share(all: &[&Judged], key: &str) -> Share {
         "coverage" => intervals(all).share(),
         "double_both" => Share::count(visible(all, Role::Double), Judged::all_found),
         "held_out_worse" => Share::count(all.iter().filter_map(|judged| judged.held_out()), is_worse),
-        "unseen_worse" => Share::count(all.iter().filter_map(|judged| judged.evidence.unseen), is_worse),
+        "unseen_worse" => Share::count(all.iter().filter_map(|judged| judged.fits.unseen), is_worse),
         "outside_wrong_name" => Share::count(of_role(all, Role::Outside), Judged::claims_wrongly),
         "false_minimum" => {
             let right = all.iter().filter(|judged| judged.names_all_and_nothing_else());
@@ -220,7 +220,7 @@ fn figure(all: &[&Judged], key: &str) -> (Option<f64>, usize) {
             ((count > 0).then(|| logs.sum::<f64>() / count as f64), count)
         }
         "held_out_ratio" => middle(shown(all).filter_map(Judged::held_out).map(ratio)),
-        "unseen_ratio" => middle(shown(all).filter_map(|judged| judged.evidence.unseen).map(ratio)),
+        "unseen_ratio" => middle(shown(all).filter_map(|judged| judged.fits.unseen).map(ratio)),
         _ => (None, 0),
     }
 }
@@ -248,7 +248,7 @@ fn place_errors(all: &[&Judged]) -> Vec<f64> {
 fn plain<'a>(all: &'a [&Judged]) -> impl Iterator<Item = &'a Judged> {
     visible(all, Role::Single).filter(|judged| {
         let other = |name: &Name| !judged.hidden().contains(name) && judged.accepts(name);
-        judged.size() >= PLAIN && !judged.evidence.others.keys().any(other)
+        judged.size() >= PLAIN && !judged.fits.others.keys().any(other)
     })
 }
 

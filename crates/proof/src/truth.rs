@@ -4,7 +4,7 @@ use crate::hammer_test::recorded_lines;
 use crate::sealable::{Filed, Sealable};
 use crate::{GenerationError, Role, describe};
 use jointscope_fixture::{Effect, Fixture};
-use jointscope_rig::{HammerTest, Instrument, Outside, StructureError, frfs};
+use jointscope_rig::{HammerSetup, Instrument, Outside, StructureError, frfs};
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
@@ -27,7 +27,7 @@ pub struct Truth {
     /// Hidden physics that no effect describes.
     pub outside: Option<Outside>,
     /// How it was measured.
-    pub hammer: HammerTest,
+    pub hammer: HammerSetup,
     /// FRFs that nobody recorded.
     #[serde(deserialize_with = "filed_pairs")]
     pub unseen: Vec<FrfPair>,

@@ -2,7 +2,7 @@
 
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_rig::universal_file::{Precision, to_bytes};
-use jointscope_rig::{HammerTest, Instrument, drawn_within_tolerance, frfs, generator};
+use jointscope_rig::{HammerSetup, Instrument, drawn_within_tolerance, frfs, generator};
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 use std::error::Error;
@@ -125,7 +125,7 @@ fn recording(case: &Case) -> Result<FrfSet, Box<dyn Error>> {
     }
     let exact = FrfSet::new(lines, FrfForm::Accelerance, pairs, values)?;
     let corner = if storeys { 400.0 } else { 1000.0 };
-    let hammer = HammerTest {
+    let hammer = HammerSetup {
         averages: 8,
         noise_response: 0.005,
         noise_force: 0.001,

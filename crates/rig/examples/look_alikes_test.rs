@@ -5,7 +5,7 @@
 
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_rig::universal_file::{Precision, to_bytes};
-use jointscope_rig::{HammerTest, Instrument, drawn_within_tolerance, frfs, generator};
+use jointscope_rig::{HammerSetup, Instrument, drawn_within_tolerance, frfs, generator};
 use jointscope_spectra::{FrfPair, SpectralLines};
 use std::error::Error;
 use std::path::PathBuf;
@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     fs::write(folder.join("fixture.json"), BELIEVED)?;
     for (round, (name, pairs)) in TESTS.into_iter().enumerate() {
         let pairs: Vec<FrfPair> = pairs.iter().map(|(o, i)| FrfPair::transverse(o, i)).collect();
-        let hammer = HammerTest {
+        let hammer = HammerSetup {
             averages: 8,
             noise_response: 0.01,
             noise_force: 0.001,

@@ -5,7 +5,7 @@
 
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_rig::universal_file::{Precision, to_bytes};
-use jointscope_rig::{HammerTest, Instrument, drawn_within_tolerance, frfs, generator};
+use jointscope_rig::{HammerSetup, Instrument, drawn_within_tolerance, frfs, generator};
 use jointscope_spectra::{FrfPair, SpectralLines};
 use std::error::Error;
 use std::path::PathBuf;
@@ -66,7 +66,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let truth = drawn_within_tolerance(&believed, &mut generator(SEED))?.with_physics(vec![hidden()])?;
     let pairs = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")].map(|(o, i)| FrfPair::transverse(o, i));
     let lines = SpectralLines::even(5.0, 5.0, 200)?;
-    let hammer = HammerTest {
+    let hammer = HammerSetup {
         averages: 8,
         noise_response: 0.005,
         noise_force: 0.001,

@@ -7,7 +7,7 @@ use crate::physical::add_viscous;
 use crate::tolerance::drawn_within_tolerance;
 use crate::universal_file::{FileError, Precision, to_bytes};
 use crate::{
-    Assembly, BeamElement, HammerError, HammerTest, Law, Row, Station, Structure, StructureError, generator,
+    Assembly, BeamElement, HammerError, HammerSetup, Law, Row, Station, Structure, StructureError, generator,
     read,
 };
 use jointscope_fixture::{BodyKind, Fixture, JointLaw};
@@ -108,7 +108,7 @@ pub struct GluedJoint {
     /// The structure that was struck.
     pub structure: Structure,
     /// The hammer test.
-    pub hammer: HammerTest,
+    pub hammer: HammerSetup,
 }
 
 impl GluedJoint {
@@ -122,7 +122,7 @@ impl GluedJoint {
         let layers = LAYERS.map(Layer::of_epoxy);
         let strip = strip(&truth)?;
         let structure = assemble(&truth, &strip, &layers)?;
-        let hammer = HammerTest {
+        let hammer = HammerSetup {
             averages: 8,
             noise_response: 0.01,
             noise_force: 0.003,

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// How the hammer strikes and how noisy the channels are.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct HammerTest {
+pub struct HammerSetup {
     /// Hits averaged for an FRF, at least 2.
     pub averages: u32,
     /// Noise of the response channel: white in acceleration, relative to the rms of the acceleration over the lines.
@@ -45,12 +45,12 @@ mod as_text {
 /// Noise of the force channel as a share of that of the responses, both relative to what their channel reads.
 const NOISE_OF_FORCE: f64 = 0.1;
 
-impl HammerTest {
+impl HammerSetup {
     /// A hammer test as those of the concealed cases are: `noise` on the responses and a tenth of it on the force, each relative to the channel's
     /// rms, white over the lines; blows whose force has fallen to about 70 % at `highest_hz` and whose strength scatters by a quarter; hits of its own for
     /// every FRF.
     pub fn ordinary(noise: f64, averages: u32, highest_hz: f64, seed: u64) -> Self {
-        HammerTest {
+        HammerSetup {
             averages,
             noise_response: noise,
             noise_force: NOISE_OF_FORCE * noise,

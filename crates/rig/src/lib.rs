@@ -8,7 +8,7 @@
 //! |---|---|
 //! | the structure | [`Structure`], built of an [`Assembly`] of elements on [`Station`]s, or from a fixture with its `physics` |
 //! | what channels read | [`frfs`], [`read`], [`Instrument`] |
-//! | hammer hits and noise | [`HammerTest`] |
+//! | hammer hits and noise | [`HammerSetup`] |
 //! | hits over time on joints that depend on amplitude | [`StrikeTest`], [`random_law`] |
 //! | stepped sines at several levels on such joints | [`SteppedSines`] |
 //! | random assemblies | [`Family`], [`drawn_within_tolerance`], [`random_effect`], [`random_rotational_support`], [`extent`] |
@@ -54,7 +54,7 @@ pub mod universal_file;
 pub use channels::{Instrument, frfs, read};
 pub use error::{HammerError, StructureError};
 pub use families::Family;
-pub use hits::{HammerTest, smoothed_variance};
+pub use hits::{HammerSetup, smoothed_variance};
 pub use modal_errors::{ModalErrors, UsualErrors};
 pub use outside::Outside;
 pub use physical::{Assembly, BeamElement, Law, Row, Station, Structure};

@@ -3,7 +3,7 @@
 use clap::Args;
 use jointscope::FrfSet;
 use jointscope::lumped::Instrument;
-use jointscope::rig::HammerTest;
+use jointscope::rig::HammerSetup;
 use jointscope::spectra::in_text;
 
 use crate::computed_frfs::ComputedFrfs;
@@ -62,7 +62,7 @@ impl NoiseArguments {
     /// H1 and coherence of the blows.
     fn measured(&self, percent: f64, frfs: &FrfSet) -> Result<FrfSet, jointscope::rig::HammerError> {
         let hz = frfs.lines().hz();
-        HammerTest::ordinary(percent / 100.0, self.averages, hz[hz.len() - 1], self.seed).measure(frfs)
+        HammerSetup::ordinary(percent / 100.0, self.averages, hz[hz.len() - 1], self.seed).measure(frfs)
     }
 
     /// What makes the same file again: ID line 2.

@@ -5,7 +5,7 @@ use crate::model_error::told;
 use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, TestDrift, Verdict};
 use jointscope::fixture::{Dof, Effect, EffectKind, Place};
 use jointscope::{Fixture, FrfPair, FrfSet, SpectralLines};
-use jointscope_rig::{HammerTest, Instrument, drawn_within_tolerance, frfs, generator};
+use jointscope_rig::{HammerSetup, Instrument, drawn_within_tolerance, frfs, generator};
 use num_complex::Complex64;
 
 /// What differs while a reference was struck.
@@ -44,7 +44,7 @@ fn struck(
     effects: &[Effect],
     course: Course,
     (pairs, lines): (&[FrfPair], &SpectralLines),
-    hammer: &HammerTest,
+    hammer: &HammerSetup,
 ) -> FrfSet {
     let truth = drawn_within_tolerance(fixture, &mut generator(hammer.seed)).unwrap();
     let mut values: Vec<Complex64> = Vec::new();
@@ -69,7 +69,7 @@ fn blocks(effects: &[Effect], course: Course, seed: u64) -> (Fixture, FrfSet) {
 fn frame(course: Course, seed: u64) -> (Fixture, FrfSet) {
     let fixture = storeys();
     let lines = SpectralLines::even(20.0, 1.0, 280).unwrap();
-    let hammer = HammerTest { corner: 400.0, ..hammer(seed) };
+    let hammer = HammerSetup { corner: 400.0, ..hammer(seed) };
     let frfs = struck(&fixture, &[], course, (&grid(&["1", "2", "3"], &["1", "2", "3"]), &lines), &hammer);
     (fixture, frfs)
 }
@@ -190,7 +190,7 @@ fn without_drift_few_tests_look_as_if_there_were() {
 fn tests_without_drift_seldom_look_as_if_there_were() {
     let common = |seed, noise: (f64, f64)| {
         let hammer =
-            HammerTest { common_hits: true, noise_response: noise.0, noise_force: noise.1, ..hammer(seed) };
+            HammerSetup { common_hits: true, noise_response: noise.0, noise_force: noise.1, ..hammer(seed) };
         let fixture = believed(RATIOS);
         let frfs = struck(&fixture, &[], &[], (&four_pairs(), &lines()), &hammer);
         (fixture, frfs)

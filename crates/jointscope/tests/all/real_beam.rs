@@ -5,7 +5,7 @@ use jointscope::Says;
 use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Fit, Hypothesis, Observation, Verdict};
 use jointscope::fixture::{Effect, EffectKind, Place};
 use jointscope::{Fixture, FrfForm, FrfPair, FrfSet, SpectralLines};
-use jointscope_rig::HammerTest;
+use jointscope_rig::HammerSetup;
 use std::path::Path;
 
 /// Fixture and FRFs of a real beam, where they are.
@@ -129,7 +129,7 @@ fn without_coherence(effects: Vec<Effect>, seed: u64) -> (Fixture, FrfSet) {
     let mut pairs = common::four_pairs();
     pairs.push(FrfPair::transverse("4", "4"));
     let lines = SpectralLines::even(16.0, 4.0, 320).unwrap();
-    let hammer = HammerTest {
+    let hammer = HammerSetup {
         averages: 5,
         noise_response: 0.001,
         noise_force: 0.01,

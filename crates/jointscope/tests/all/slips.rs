@@ -5,7 +5,7 @@ use crate::model_error::told;
 use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
 use jointscope::fixture::{Dof, Effect, EffectKind, Place};
 use jointscope::{Fixture, FrfPair, FrfSet, Says, SpectralLines};
-use jointscope_rig::HammerTest;
+use jointscope_rig::HammerSetup;
 use num_complex::Complex64;
 
 /// The four FRFs across the joint, and those on block A.
@@ -226,7 +226,7 @@ fn a_soft_tip_whose_blow_dies_away_within_the_band_is_no_misfit() {
     let fixture = believed([0.004, 0.004]);
     let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
     for (corner, averages, seed) in [(150.0, 5, 34), (250.0, 5, 35), (250.0, 10, 36)] {
-        let soft = HammerTest { corner, averages, noise_force: 0.002, ..hammer(seed) };
+        let soft = HammerSetup { corner, averages, noise_force: 0.002, ..hammer(seed) };
         let frfs = measured(&fixture, Vec::new(), (&four_pairs(), &lines), &soft);
         let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
         assert_eq!(
@@ -240,8 +240,8 @@ fn a_soft_tip_whose_blow_dies_away_within_the_band_is_no_misfit() {
 }
 
 /// A soft tip, and a force channel whose noise is a fiftieth of its signal: where the blow dies away H1 is too small by some per cent.
-fn noisy_force(seed: u64) -> HammerTest {
-    HammerTest { corner: 150.0, averages: 8, noise_force: 0.02, ..hammer(seed) }
+fn noisy_force(seed: u64) -> HammerSetup {
+    HammerSetup { corner: 150.0, averages: 8, noise_force: 0.02, ..hammer(seed) }
 }
 
 #[test]
@@ -261,7 +261,7 @@ fn what_is_there_is_named_beside_noise_of_the_force() {
     let fixture = believed([0.004, 0.004]);
     let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
     let gain = on(EffectKind::ChannelGain, Place::Response("4".into()), &[1.1]);
-    let hammer = HammerTest { corner: 250.0, ..noisy_force(1) };
+    let hammer = HammerSetup { corner: 250.0, ..noisy_force(1) };
     let frfs = measured(&fixture, vec![gain], (&four_pairs(), &lines), &hammer);
     let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
     let [found] = &diagnosis.findings[..] else { panic!("{}", told(&diagnosis)) };

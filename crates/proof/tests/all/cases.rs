@@ -174,13 +174,10 @@ fn the_truth_as_an_answer_is_right_in_every_respect() {
     let answers =
         Answers::by(&cases, 1, |_| (), |_| Ok(answer(&truths[0], vec![found(effect, 0.99, |v| v.abs())])));
     let judged = Judged::all(&cases, truths.clone(), &answers, 1, |_| ());
-    let evidence = &judged[0].evidence;
-    assert!(evidence.repaired >= evidence.truth && evidence.repaired < evidence.truth + 60.0, "{evidence:?}");
-    assert!(evidence.refitted > evidence.repaired, "{evidence:?}");
-    assert!(
-        evidence.beyond_tolerance.is_empty(),
-        "true quantities lie within their tolerances: {evidence:?}"
-    );
-    let [refitted, repaired] = evidence.unseen.unwrap();
+    let fits = &judged[0].fits;
+    assert!(fits.repaired >= fits.truth && fits.repaired < fits.truth + 60.0, "{fits:?}");
+    assert!(fits.refitted > fits.repaired, "{fits:?}");
+    assert!(fits.beyond_tolerance.is_empty(), "true quantities lie within their tolerances: {fits:?}");
+    let [refitted, repaired] = fits.unseen.unwrap();
     assert!(repaired < 1e-6 && refitted > 1e-4, "unseen FRFs: {refitted}, {repaired}");
 }

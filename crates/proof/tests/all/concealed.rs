@@ -8,7 +8,7 @@ use jointscope_proof::concealed::{
     Concealed, ConcealmentError, ConcealmentKind, ConcealmentPlan, ConcealmentScores, Explained, Outcome,
 };
 use jointscope_proof::{Answer, Answers, Case, NoAnswer};
-use jointscope_rig::{HammerTest, Instrument, frfs};
+use jointscope_rig::{HammerSetup, Instrument, frfs};
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 
 /// Two blocks, a strip that shears and is glued, a known mass, a soft support: room for every kind of concealment.
@@ -41,7 +41,7 @@ fn clean(fixture: &Fixture, pairs: &[FrfPair]) -> FrfSet {
 
 /// The recording of a fixture, with the noise of a good hammer test.
 fn measured(fixture: &Fixture) -> FrfSet {
-    let hammer = HammerTest {
+    let hammer = HammerSetup {
         averages: 8,
         noise_response: 0.004,
         noise_force: 0.0005,

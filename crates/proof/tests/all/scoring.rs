@@ -1,6 +1,6 @@
 //! Scores of answerers whose worth is known.
 
-use crate::common::{answer, evidence, found, judged, opened};
+use crate::common::{answer, fits, found, judged, opened};
 use jointscope_diagnosis::Verdict;
 use jointscope_fixture::{Effect, EffectKind, Place};
 use jointscope_proof::{Judged, NOTHING, Name, NoAnswer, Plan, Role, Score, Share, Truth};
@@ -44,7 +44,7 @@ fn answers_to_other_cases_score_at_chance() {
             // What was hidden elsewhere, as an answer to this case; the fixture handed back does not matter here.
             let findings = other.effects().iter().map(|effect| found(effect, 0.99, |_| 0.0)).collect();
             let own = Judged { answer: Ok(answer(other, findings)), ..judged(truth, &[]) };
-            Judged { evidence: jointscope_proof::Evidence { repaired: 900.0, ..own.evidence }, ..own }
+            Judged { fits: jointscope_proof::IndependentFits { repaired: 900.0, ..own.fits }, ..own }
         })
         .collect();
     let score = Score::of(&all);
@@ -89,8 +89,8 @@ fn a_name_that_fits_as_well_as_the_truth_is_right_and_one_that_does_not_is_wrong
     let other = Effect::new(EffectKind::ExponentialWindow, Place::All, None, &[5.0]);
     for (objective, right) in [(108.9, true), (109.1, false)] {
         let mut case = judged(truth, std::slice::from_ref(&other));
-        case.evidence.others.insert(Name::of(&other), objective);
-        case.evidence.repaired = objective;
+        case.fits.others.insert(Name::of(&other), objective);
+        case.fits.repaired = objective;
         assert_eq!(share(&Score::of(&[case]), "single_place").of, usize::from(right), "{objective}");
     }
 }
@@ -101,7 +101,7 @@ fn an_effect_that_does_not_show_is_not_asked_for() {
     let truth = truths.iter().find(|truth| truth.role == Role::Single).unwrap();
     for (refitted, asked) in [(149.0, 0), (151.0, 1)] {
         let mut case = judged(truth, &[]);
-        case.evidence.refitted = refitted;
+        case.fits.refitted = refitted;
         assert_eq!(share(&Score::of(&[case]), "single_place").all, asked, "{refitted}");
     }
 }
@@ -129,11 +129,7 @@ fn intervals_of_the_right_width_cover_and_halved_ones_do_not() {
                     let half = 1.96 * width * size;
                     *interval = Some([quantity.value - half, quantity.value + half]);
                 }
-                Judged {
-                    truth: truth.clone(),
-                    answer: Ok(answer(truth, vec![finding])),
-                    evidence: evidence(truth),
-                }
+                Judged { truth: truth.clone(), answer: Ok(answer(truth, vec![finding])), fits: fits(truth) }
             })
             .collect();
         let score = Score::of(&all);
@@ -163,7 +159,7 @@ fn of_two_effects_both_must_be_right() {
     let both = truth.effects();
     let window = |decay| Effect::new(EffectKind::ExponentialWindow, Place::All, None, &[decay]);
     let bad = |case: Judged| Judged {
-        evidence: jointscope_proof::Evidence { repaired: 400.0, ..case.evidence.clone() },
+        fits: jointscope_proof::IndependentFits { repaired: 400.0, ..case.fits.clone() },
         ..case
     };
     let with = |one: &Effect| vec![one.clone(), window(5.0)];
@@ -180,7 +176,7 @@ fn of_two_effects_both_must_be_right() {
         assert_eq!((share.of, share.all), (right, 1), "{what}");
     }
     let mut hardly = judged(truth, both);
-    hardly.evidence.without[1] = 130.0;
+    hardly.fits.without[1] = 130.0;
     assert_eq!(share(&Score::of(&[hardly]), "double_both").all, 0, "one of them does not show");
 }
 
@@ -191,7 +187,7 @@ fn a_claim_about_physics_outside_the_vocabulary_is_wrong_unless_it_cannot_be_tol
     let window = Effect::new(EffectKind::ExponentialWindow, Place::All, None, &[5.0]);
     for (probability, repaired, wrong) in [(0.95, 400.0, 1), (0.8, 400.0, 0), (0.95, 105.0, 0)] {
         let mut case = judged(truth, std::slice::from_ref(&window));
-        case.evidence.repaired = repaired;
+        case.fits.repaired = repaired;
         case.answer.as_mut().unwrap().findings[0].probability = probability;
         let share = share(&Score::of(&[case]), "outside_wrong_name");
         assert_eq!((share.of, share.all), (wrong, 1), "probability {probability}, objective {repaired}");

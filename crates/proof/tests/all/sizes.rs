@@ -3,7 +3,7 @@
 use crate::common::{judged, opened};
 use jointscope_diagnosis::{Fit, Hypothesis, Observation};
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture};
-use jointscope_proof::{Case, Evidence, Family, Judged, Limits, Plan, Reference, Role, Score};
+use jointscope_proof::{Case, Family, IndependentFits, Judged, Limits, Plan, Reference, Role, Score};
 
 fn plan(graded: usize) -> Plan {
     Plan { cases: 8, graded, seed: 11, families: vec![Family::TwoBlocks], ..Plan::default() }
@@ -42,9 +42,9 @@ fn detection_is_counted_by_size_over_singles_and_graded_effects() {
     let (_, truths) = opened(&plan(16));
     let sized = |truth: &jointscope_proof::Truth, size: f64, found: bool| {
         let own = judged(truth, if found { truth.effects() } else { &[] });
-        let evidence =
-            Evidence { refitted: 100.0 + size, without: vec![100.0 + size], ..own.evidence.clone() };
-        Judged { evidence, ..own }
+        let fits =
+            IndependentFits { refitted: 100.0 + size, without: vec![100.0 + size], ..own.fits.clone() };
+        Judged { fits, ..own }
     };
     let all: Vec<Judged> = truths
         .iter()

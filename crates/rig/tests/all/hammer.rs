@@ -2,10 +2,10 @@
 
 use crate::common::chi_squared;
 use jointscope_fixture::Fixture;
-use jointscope_rig::{Family, HammerTest, Instrument, frfs, generator};
+use jointscope_rig::{Family, HammerSetup, Instrument, frfs, generator};
 use jointscope_spectra::{FrfSet, SpectralLines};
 
-const HAMMER: HammerTest = HammerTest {
+const HAMMER: HammerSetup = HammerSetup {
     averages: 8,
     noise_response: 0.01,
     noise_force: 0.002,
@@ -28,7 +28,7 @@ fn the_truth_explains_its_recording_with_chi_squared_of_one_whatever_the_average
         let (mut chi2, mut dof) = (0.0, 0.0);
         for seed in 0..10 {
             let truth = truth(seed).1;
-            let recorded = HammerTest { averages, seed, ..HAMMER }.measure(&truth).unwrap();
+            let recorded = HammerSetup { averages, seed, ..HAMMER }.measure(&truth).unwrap();
             let (c, d) = chi_squared(&recorded, &truth, 10);
             chi2 += c;
             dof += d;
@@ -43,13 +43,13 @@ fn the_same_seed_gives_the_same_recording_and_another_seed_another() {
     let truth = truth(1).1;
     let recorded = HAMMER.measure(&truth).unwrap();
     assert_eq!(recorded, HAMMER.measure(&truth).unwrap());
-    assert_ne!(recorded, HammerTest { seed: 4, ..HAMMER }.measure(&truth).unwrap());
+    assert_ne!(recorded, HammerSetup { seed: 4, ..HAMMER }.measure(&truth).unwrap());
 }
 
 #[test]
 fn without_noise_the_truth_comes_back_with_a_coherence_of_one() {
     let truth = truth(2).1;
-    let quiet = HammerTest { noise_response: 0.0, noise_force: 0.0, ..HAMMER };
+    let quiet = HammerSetup { noise_response: 0.0, noise_force: 0.0, ..HAMMER };
     let recorded = quiet.measure(&truth).unwrap();
     for index in 0..4 {
         assert!(recorded.coherence(index).unwrap().iter().all(|g| (1.0 - g).abs() < 1e-12));
@@ -63,7 +63,7 @@ fn without_noise_the_truth_comes_back_with_a_coherence_of_one() {
 /// Correlation of the errors of FRFs 4/1 and 3/1, each relative to its truth.
 fn correlation(common_hits: bool) -> f64 {
     let truth = truth(5).1;
-    let hammer = HammerTest { noise_response: 1e-5, noise_force: 0.02, common_hits, ..HAMMER };
+    let hammer = HammerSetup { noise_response: 1e-5, noise_force: 0.02, common_hits, ..HAMMER };
     let recorded = hammer.measure(&truth).unwrap();
     let error = |index: usize| {
         let truth = truth.values(index).to_vec();
@@ -85,8 +85,8 @@ fn responses_recorded_in_common_hits_share_the_noise_of_the_force() {
 #[test]
 fn impossible_settings_are_refused_in_words() {
     let truth = truth(1).1;
-    let error = HammerTest { averages: 1, ..HAMMER }.measure(&truth).unwrap_err();
+    let error = HammerSetup { averages: 1, ..HAMMER }.measure(&truth).unwrap_err();
     assert_eq!(error.to_string(), "1 averages leave no coherence: at least 2 are needed");
-    assert!(HammerTest { noise_force: -0.1, ..HAMMER }.measure(&truth).is_err());
-    assert!(HammerTest { corner: 0.0, ..HAMMER }.measure(&truth).is_err());
+    assert!(HammerSetup { noise_force: -0.1, ..HAMMER }.measure(&truth).is_err());
+    assert!(HammerSetup { corner: 0.0, ..HAMMER }.measure(&truth).is_err());
 }

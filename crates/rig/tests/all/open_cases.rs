@@ -2,7 +2,7 @@
 
 use crate::common::{chi_squared, frfs_in, largest_error};
 use jointscope_fixture::Fixture;
-use jointscope_rig::{HammerTest, Instrument, frfs, smoothed_variance};
+use jointscope_rig::{HammerSetup, Instrument, frfs, smoothed_variance};
 use jointscope_spectra::FrfSet;
 use serde_json::Value;
 use std::fs;
@@ -84,7 +84,7 @@ fn the_noise_of_a_simulated_test_is_that_of_the_independent_one() {
         let Ok(bytes) = fs::read(case.join("frf.uff")) else { continue };
         let recorded = frfs_in(&bytes, &fixture);
         let setting = |name: &str| truth["measurement"][name].as_f64().unwrap();
-        let hammer = HammerTest {
+        let hammer = HammerSetup {
             averages: setting("averages") as u32,
             noise_response: setting("noise_response"),
             noise_force: setting("noise_force"),

@@ -3,7 +3,7 @@
 
 use jointscope::fixture::Effect;
 use jointscope::{Fixture, FrfPair, FrfSet, SpectralLines};
-use jointscope_rig::{HammerTest, Instrument, drawn_within_tolerance, frfs, generator};
+use jointscope_rig::{HammerSetup, Instrument, drawn_within_tolerance, frfs, generator};
 use jointscope_samples::{ACROSS, transverse};
 
 /// The fixture file, with the modal damping ratios of its two elastic modes.
@@ -40,8 +40,8 @@ pub(crate) fn lines() -> SpectralLines {
 }
 
 /// The hammer test of most tests: ten hits, half a per cent of noise.
-pub(crate) fn hammer(seed: u64) -> HammerTest {
-    HammerTest {
+pub(crate) fn hammer(seed: u64) -> HammerSetup {
+    HammerSetup {
         averages: 10,
         noise_response: 0.005,
         noise_force: 0.0007,
@@ -57,7 +57,7 @@ pub(crate) fn measured(
     believed: &Fixture,
     effects: Vec<Effect>,
     (pairs, lines): (&[FrfPair], &SpectralLines),
-    hammer: &HammerTest,
+    hammer: &HammerSetup,
 ) -> FrfSet {
     let drawn = drawn_within_tolerance(believed, &mut generator(hammer.seed)).unwrap();
     let truth = drawn.with_physics(effects).unwrap();

@@ -22,13 +22,13 @@ use crate::generate::{Draw, turn};
 use crate::judge::Judge;
 use crate::judged::error_on;
 use crate::sealable::{Filed, Sealable};
-use crate::{Answer, Case, Evidence, GenerationError, Judgeable, Judged, Role};
+use crate::{Answer, Case, GenerationError, IndependentFits, Judgeable, Judged, Role};
 use assembly::{Assembly, UNSTATED};
 use concealed::{CONCEALED, Concealed, Size, mount};
 use footings::Footings;
 use jointscope_fem::{MeshOptions, ModeKind, ModeRange, Omissions, Twin};
 use jointscope_fixture::{Effect, Fixture};
-use jointscope_rig::{HammerTest, StructureError, drawn_within_tolerance, generator};
+use jointscope_rig::{HammerSetup, StructureError, drawn_within_tolerance, generator};
 use jointscope_spectra::{FrfSet, SpectraError, SpectralLines};
 use names::Gap;
 use serde::Deserialize;
@@ -87,7 +87,7 @@ pub struct AsIsTruth {
     /// What is true of the solid besides.
     pub also_true: Vec<TrueName>,
     /// How it was measured.
-    pub hammer: HammerTest,
+    pub hammer: HammerSetup,
 }
 
 impl AsIsTruth {
@@ -238,14 +238,14 @@ impl Judgeable for AsIsTruth {
         }
     }
 
-    fn evidence(&self, case: &Case, answer: &Answer) -> Option<Evidence> {
+    fn independent_fits(&self, case: &Case, answer: &Answer) -> Option<IndependentFits> {
         let [clean, unseen] = self.frfs().ok()?;
         let judge = Judge::of(case)?;
         let error = |fixture: &Fixture| error_on(&unseen, &with_points(fixture, &self.solid, UNSTATED)?);
-        Some(Evidence {
+        Some(IndependentFits {
             truth: judge.objective_of_clean(&clean, &self.lumped)?,
             unseen: error(&answer.refitted).zip(error(&answer.repaired)).map(Into::into),
-            ..Evidence::of_answer(&judge, answer)?
+            ..IndependentFits::of_answer(&judge, answer)?
         })
     }
 }
@@ -255,7 +255,7 @@ impl Nameable for AsIsTruth {
         self.gap
     }
 
-    fn stands_for(&self, _: &Effect, _: &Evidence) -> bool {
+    fn stands_for(&self, _: &Effect, _: &IndependentFits) -> bool {
         false
     }
 

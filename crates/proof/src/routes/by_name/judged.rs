@@ -17,7 +17,7 @@ impl<T: Nameable> Judged<T> {
     /// Whether a finding is what was hidden, or says the same.
     fn is_accepted(&self, found: &Found) -> bool {
         let (truth, effect) = (&self.truth, &found.effect);
-        self.is_hidden(found) || truth.is_the_same(effect) || truth.stands_for(effect, &self.evidence)
+        self.is_hidden(found) || truth.is_the_same(effect) || truth.stands_for(effect, &self.fits)
     }
 
     /// Whether a finding is in the structure, hidden or not.

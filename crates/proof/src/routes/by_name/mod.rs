@@ -10,7 +10,7 @@ mod score;
 pub use names::TrueName;
 pub(super) use score::{ONE_OR_NONE, UNLISTED, WRONG_EVERYWHERE, score};
 
-use crate::{Evidence, Judgeable, Judged};
+use crate::{IndependentFits, Judgeable, Judged};
 use jointscope_fixture::Effect;
 
 /// What is true of a case that is judged by the names given.
@@ -24,7 +24,7 @@ pub trait Nameable: Judgeable + Sized {
         false
     }
     /// Whether an effect by another name says the same of the recording as what is hidden.
-    fn stands_for(&self, found: &Effect, evidence: &Evidence) -> bool;
+    fn stands_for(&self, found: &Effect, fits: &IndependentFits) -> bool;
     /// Whether an effect by another name is exactly the same thing as what is hidden, whatever the recording.
     fn is_the_same(&self, _: &Effect) -> bool {
         false

@@ -68,7 +68,7 @@ pub(in crate::routes) fn score<T: Nameable>(rates: &[Line], judged: &[Judged<T>]
         roles: roles.collect(),
         rates: Rate::all(rates, |key| share(judged, &sizes, key)),
         figures: Figure::all(&FIGURES, |key| {
-            let unseen = judged.iter().filter(|case| case.is_right()).filter_map(|c| c.evidence.unseen);
+            let unseen = judged.iter().filter(|case| case.is_right()).filter_map(|c| c.fits.unseen);
             match key {
                 "unseen_ratio" => middle(unseen.map(|[refitted, repaired]| refitted / repaired)),
                 _ => middle(unseen.map(|[_, repaired]| 100.0 * repaired)),
@@ -117,22 +117,22 @@ fn share<T: Nameable>(judged: &[Judged<T>], sizes: &[Size], key: &str) -> Share 
         "unnoticed" => Share::count(shown(), |case| case.is_consistent()),
         "sizes" => Share::count(sizes, Size::is_right),
         "coverage" => Share::count(sizes, Size::is_held),
-        _ => Share::count(judged.iter().filter_map(|case| case.evidence.unseen), is_worse),
+        _ => Share::count(judged.iter().filter_map(|case| case.fits.unseen), is_worse),
     }
 }
 
 fn line<T: Nameable>(case: &Judged<T>) -> CaseLine {
     let mut line = case.line_of(case.errors(), |found| case.is_in_it(found));
-    let evidence = &case.evidence;
+    let fits = &case.fits;
     let size = case.found_size();
     line.asked = case.truth.concealed().is_none() || case.is_asked() || !case.findings().is_empty();
     line.value["visible"] = json!(case.is_asked() || (role_of(case) == "outside" && case.is_visible()));
     line.value["sizes"] = json!(size.iter().collect::<Vec<_>>());
     line.details.push(format!(
         "objective: refitted {:.1}, repaired {:.1}, true {:.1}",
-        evidence.refitted, evidence.repaired, evidence.truth
+        fits.refitted, fits.repaired, fits.truth
     ));
     line.details.extend(size.iter().map(Size::says));
-    line.details.extend(errors("FRFs at unmeasured points", evidence.unseen));
+    line.details.extend(errors("FRFs at unmeasured points", fits.unseen));
     line
 }

@@ -14,7 +14,7 @@ use crate::case_draft::CaseDraft;
 use crate::generate::{Draw, turn};
 use crate::sealable::{Filed, Sealable};
 use crate::truth::filed_pairs;
-use crate::{AS_GOOD, Answer, Case, Evidence, GenerationError, Judgeable, Name, Role, Truth};
+use crate::{AS_GOOD, Answer, Case, GenerationError, IndependentFits, Judgeable, Name, Role, Truth};
 use hidden::OneOf;
 use jointscope_fixture::{Effect, EffectKind};
 use jointscope_rig::{Outside, generator};
@@ -97,21 +97,21 @@ impl Judgeable for LumpedTruth {
         self.truth.outside.as_ref().map_or_else(|| self.truth.hidden(), ToString::to_string)
     }
 
-    fn evidence(&self, case: &Case, answer: &Answer) -> Option<Evidence> {
-        let evidence = self.truth.evidence(case, answer)?;
+    fn independent_fits(&self, case: &Case, answer: &Answer) -> Option<IndependentFits> {
+        let fits = self.truth.independent_fits(case, answer)?;
         // What is known beside physics without a name is in every fit.
-        let without = if self.truth.role == Role::Outside { Vec::new() } else { evidence.without };
-        Some(Evidence { without, ..evidence })
+        let without = if self.truth.role == Role::Outside { Vec::new() } else { fits.without };
+        Some(IndependentFits { without, ..fits })
     }
 }
 
 impl Nameable for LumpedTruth {
     /// What fits alone as well as the truth; of physics without a name all that is named together.
-    fn stands_for(&self, found: &Effect, evidence: &Evidence) -> bool {
-        let as_good = |objective: f64| objective <= evidence.truth + AS_GOOD;
+    fn stands_for(&self, found: &Effect, fits: &IndependentFits) -> bool {
+        let as_good = |objective: f64| objective <= fits.truth + AS_GOOD;
         match self.truth.role {
-            Role::Single => evidence.others.get(&Name::of(found)).copied().is_some_and(as_good),
-            Role::Outside => as_good(evidence.repaired),
+            Role::Single => fits.others.get(&Name::of(found)).copied().is_some_and(as_good),
+            Role::Outside => as_good(fits.repaired),
             _ => false,
         }
     }

@@ -12,7 +12,7 @@ use crate::judged::error_on;
 use crate::laboratory::others;
 use crate::random::log_uniform;
 use crate::sealable::{Filed, Sealable};
-use crate::{AS_GOOD, Answer, Case, Evidence, GenerationError, Judgeable, Judged, Name, Role, Truth};
+use crate::{AS_GOOD, Answer, Case, GenerationError, IndependentFits, Judgeable, Judged, Name, Role, Truth};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_rig::{
     Instrument, ModalErrors, StructureError, UsualErrors, drawn_within_tolerance, generator, random_effect,
@@ -125,13 +125,13 @@ impl Judgeable for ModalErrorsTruth {
         self.truth.effects()
     }
 
-    fn evidence(&self, case: &Case, answer: &Answer) -> Option<Evidence> {
+    fn independent_fits(&self, case: &Case, answer: &Answer) -> Option<IndependentFits> {
         let judge = Judge::of(case)?;
         let lines = recorded_lines().ok()?;
         let unseen = self.frfs(&self.truth.unseen, &lines, Instrument::Perfect).ok()?;
         let error = |fixture: &Fixture| error_on(&unseen, fixture);
-        let own = Evidence::of_answer(&judge, answer)?;
-        Some(Evidence {
+        let own = IndependentFits::of_answer(&judge, answer)?;
+        Some(IndependentFits {
             truth: judge.best(&self.truth.fixture)?.objective,
             without: judge.without_each(&self.truth.fixture),
             others: others(&self.truth, answer, own.repaired, &judge),
@@ -144,13 +144,13 @@ impl Judgeable for ModalErrorsTruth {
 
 impl Nameable for ModalErrorsTruth {
     /// What fits alone as well as the truth: within what chance makes, χ² per degree of freedom being what the errors make it.
-    fn stands_for(&self, found: &Effect, evidence: &Evidence) -> bool {
-        let inflation = (evidence.truth / evidence.values.max(1) as f64).max(1.0);
-        let as_good = |objective: &f64| *objective <= evidence.truth + AS_GOOD * inflation;
-        self.role() == Role::Single && evidence.others.get(&Name::of(found)).is_some_and(as_good)
+    fn stands_for(&self, found: &Effect, fits: &IndependentFits) -> bool {
+        let inflation = (fits.truth / fits.values.max(1) as f64).max(1.0);
+        let as_good = |objective: &f64| *objective <= fits.truth + AS_GOOD * inflation;
+        self.role() == Role::Single && fits.others.get(&Name::of(found)).is_some_and(as_good)
     }
 
     fn shows(judged: &Judged<Self>) -> bool {
-        judged.is_visible() && judged.size() >= (SHOWS - 1.0) * judged.evidence.truth
+        judged.is_visible() && judged.size() >= (SHOWS - 1.0) * judged.fits.truth
     }
 }

@@ -3,7 +3,7 @@
 use super::{APART, SolidTruth, with_points};
 use crate::judge::Judge;
 use crate::judged::error_on;
-use crate::{Answer, Case, Evidence, Judgeable, Judged, Name, Role};
+use crate::{Answer, Case, IndependentFits, Judgeable, Judged, Name, Role};
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture};
 
 /// A solid case after its truth was opened.
@@ -23,16 +23,16 @@ impl Judgeable for SolidTruth {
         self.lumped.physics()
     }
 
-    fn evidence(&self, case: &Case, answer: &Answer) -> Option<Evidence> {
+    fn independent_fits(&self, case: &Case, answer: &Answer) -> Option<IndependentFits> {
         let [clean, unseen] = self.frfs().ok()?;
         let judge = Judge::of(case)?;
         let error = |fixture: &Fixture| error_on(&unseen, &with_points(fixture, &self.solid, APART)?);
-        Some(Evidence {
+        Some(IndependentFits {
             truth: judge.objective_of_clean(&clean, &self.lumped)?,
             lumped: Some(judge.best(&self.lumped)?.objective),
             without: if self.effects().len() == 2 { judge.without_each(&self.lumped) } else { Vec::new() },
             unseen: error(&answer.refitted).zip(error(&answer.repaired)).map(Into::into),
-            ..Evidence::of_answer(&judge, answer)?
+            ..IndependentFits::of_answer(&judge, answer)?
         })
     }
 }

@@ -25,7 +25,7 @@ use crate::{Case, GenerationError, Judgeable, Role};
 use assembly::{Assembly, StripShape};
 use hidden::{CONCEALED, Hidden, IN_THE_SOLID};
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
-use jointscope_rig::{HammerTest, StructureError, drawn_within_tolerance, generator};
+use jointscope_rig::{HammerSetup, StructureError, drawn_within_tolerance, generator};
 use jointscope_spectra::{FrfPair, FrfSet};
 use rand::{Rng, RngExt};
 use serde::Deserialize;
@@ -53,7 +53,7 @@ pub struct SolidTruth {
     #[serde(skip)]
     pub besides: Vec<Effect>,
     /// How it was measured.
-    pub hammer: HammerTest,
+    pub hammer: HammerSetup,
 }
 
 /// Roles by case number, repeating.

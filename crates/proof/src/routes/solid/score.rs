@@ -46,7 +46,7 @@ pub(crate) fn score(judged: &[SolidJudged]) -> (Sheet, Vec<SizeScore>) {
         rates: Rate::all(&RATES, |key| share(judged, &sizes, key)),
         figures: Figure::all(&FIGURES, |key| {
             let ratio = |[refitted, repaired]: [f64; 2]| refitted / repaired;
-            let unseen = shown().filter_map(|case| case.evidence.unseen);
+            let unseen = shown().filter_map(|case| case.fits.unseen);
             match key {
                 "held_out_ratio" => middle(shown().filter_map(|case| case.held_out()).map(ratio)),
                 "unseen_ratio" => middle(unseen.map(ratio)),
@@ -73,7 +73,7 @@ fn share(judged: &[SolidJudged], sizes: &[Size], key: &str) -> Share {
         "wrong_name" => Share::count(judged, |case| case.claims().any(|found| !case.is_true(&found.effect))),
         "sizes" => Share::count(sizes, Size::is_right),
         "coverage" => Share::count(sizes, Size::is_held),
-        "unseen_worse" => Share::count(judged.iter().filter_map(|case| case.evidence.unseen), is_worse),
+        "unseen_worse" => Share::count(judged.iter().filter_map(|case| case.fits.unseen), is_worse),
         _ => Share::default(),
     }
 }
@@ -111,16 +111,16 @@ fn across(hidden: &Effect, found: &Found, case: &SolidJudged) -> Size {
 
 fn line(case: &SolidJudged) -> CaseLine {
     let mut line = case.line_of(case.faults(), |found| case.is_true(&found.effect));
-    let (evidence, sizes) = (&case.evidence, sizes(case));
+    let (fits, sizes) = (&case.fits, sizes(case));
     line.details.push(format!(
         "objective: refitted {:.1}, repaired {:.1}, fit from the closed form {:.1}, the solid's own FRFs {:.1}",
-        evidence.refitted,
-        evidence.repaired,
-        evidence.lumped.unwrap_or(0.0),
-        evidence.truth
+        fits.refitted,
+        fits.repaired,
+        fits.lumped.unwrap_or(0.0),
+        fits.truth
     ));
     line.details.extend(sizes.iter().map(Size::says));
-    line.details.extend(errors("FRFs at other points", evidence.unseen));
+    line.details.extend(errors("FRFs at other points", fits.unseen));
     line.value["sizes"] = json!(sizes);
     line
 }

@@ -2,7 +2,7 @@
 
 use jointscope_diagnosis::Verdict;
 use jointscope_fixture::Effect;
-use jointscope_proof::{Answer, Answers, Case, Evidence, Found, Judged, NoAnswer, Plan, Role, Truth};
+use jointscope_proof::{Answer, Answers, Case, Found, IndependentFits, Judged, NoAnswer, Plan, Role, Truth};
 
 /// Cases of a plan with their truths, opened against answers that say nothing.
 pub(crate) fn opened(plan: &Plan) -> (Vec<Case>, Vec<Truth>) {
@@ -37,23 +37,23 @@ pub(crate) fn answer(truth: &Truth, findings: Vec<Found>) -> Answer {
     }
 }
 
-/// Evidence by which the hidden effects show, and a bound of a hundredth on each parameter.
-pub(crate) fn evidence(truth: &Truth) -> Evidence {
+/// Fits by which the hidden effects show, and a bound of a hundredth on each parameter.
+pub(crate) fn fits(truth: &Truth) -> IndependentFits {
     let bound = |effect: &Effect| effect.parameters.iter().map(|q| Some(0.01 * q.value.abs())).collect();
     let nothing = truth.role == Role::Null;
-    Evidence {
+    IndependentFits {
         refitted: if nothing { 100.0 } else { 1000.0 },
         repaired: 100.0,
         truth: 100.0,
         bounds: truth.effects().iter().map(bound).collect(),
         without: truth.effects().iter().map(|_| 500.0).collect(),
         unseen: Some(if nothing { [0.01, 0.01] } else { [0.2, 0.01] }),
-        ..Evidence::default()
+        ..IndependentFits::default()
     }
 }
 
 /// The effects that `answered` gives, found with certainty.
 pub(crate) fn judged(truth: &Truth, answered: &[Effect]) -> Judged {
     let findings = answered.iter().map(|effect| found(effect, 0.99, |v| 0.0196 * v.abs())).collect();
-    Judged { truth: truth.clone(), answer: Ok(answer(truth, findings)), evidence: evidence(truth) }
+    Judged { truth: truth.clone(), answer: Ok(answer(truth, findings)), fits: fits(truth) }
 }
