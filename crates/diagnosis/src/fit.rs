@@ -22,7 +22,7 @@ impl Fit {
     pub(crate) fn at(hypothesis: Hypothesis, observation: &Observation) -> Option<Self> {
         let predicted = hypothesis.predict(observation).ok()?;
         let chi2 = observation.chi2(&predicted);
-        Some(Fit { objective: chi2 + hypothesis.penalty(), hypothesis, predicted, chi2 })
+        Some(Fit { objective: chi2 + hypothesis.squared_departures(), hypothesis, predicted, chi2 })
     }
 
     /// χ² over the real values that count less the effects' free parameters.

@@ -49,7 +49,7 @@ impl<'a, const FIXED: bool> LeastSquares for Problem<'a, FIXED> {
     }
 
     fn objective(&self, at: &Iterate, weights: &Cow<'a, [f64]>) -> f64 {
-        self.fitter.observation.weighted_squares(&at.predicted, weights) + at.hypothesis.penalty()
+        self.fitter.observation.weighted_squares(&at.predicted, weights) + at.hypothesis.squared_departures()
     }
 
     fn derivatives(&self, at: &Iterate, precision: Precision) -> Option<Linearisation> {
@@ -216,7 +216,7 @@ impl<'a> Fitter<'a> {
 
     fn fit(&self, at: Iterate) -> Fit {
         let chi2 = self.observation.chi2(&at.predicted);
-        let objective = chi2 + at.hypothesis.penalty();
+        let objective = chi2 + at.hypothesis.squared_departures();
         Fit { hypothesis: at.hypothesis, predicted: at.predicted, chi2, objective }
     }
 

@@ -188,14 +188,18 @@ impl Hypothesis {
     }
 
     /// Σ (departure/std)².
-    pub fn penalty(&self) -> f64 {
-        self.parameters.iter().zip(&self.coordinates).map(|(parameter, at)| parameter.penalty(*at)).sum()
+    pub fn squared_departures(&self) -> f64 {
+        self.parameters
+            .iter()
+            .zip(&self.coordinates)
+            .map(|(parameter, at)| parameter.squared_departure(*at))
+            .sum()
     }
 
     /// The same of the fixture's quantities alone: how far one that an effect calls wrong lies from what is stated says nothing against the others.
     pub(crate) fn strain(&self) -> f64 {
         let stated = self.parameters.iter().zip(&self.coordinates).take(self.tolerances.len());
-        stated.map(|(parameter, at)| parameter.penalty(*at)).sum()
+        stated.map(|(parameter, at)| parameter.squared_departure(*at)).sum()
     }
 
     /// Coordinates of effect `index` within the whole.

@@ -64,7 +64,7 @@ impl<'a> Scan<'a> {
 
     /// What the base leaves.
     pub(crate) fn objective(&self) -> f64 {
-        dot(&self.residual, &self.residual) + self.base.penalty()
+        dot(&self.residual, &self.residual) + self.base.squared_departures()
     }
 
     /// What direction `index` of a candidate gains at its best size, to first order with the tolerances yielding, and the effect
@@ -107,6 +107,6 @@ impl<'a> Scan<'a> {
         let mut right: Vec<f64> =
             self.columns.iter().enumerate().map(|(m, column)| dot(column, &residual) - pull(m)).collect();
         factor.solve_lower_in_place(&mut right);
-        misfit + self.base.penalty() - dot(&right, &right)
+        misfit + self.base.squared_departures() - dot(&right, &right)
     }
 }

@@ -95,8 +95,8 @@ impl Parameter {
         }
     }
 
-    /// What the prior adds to the objective.
-    pub fn penalty(&self, coordinate: f64) -> f64 {
+    /// (departure/std)²: what the prior adds to the objective.
+    pub fn squared_departure(&self, coordinate: f64) -> f64 {
         self.precision * coordinate * coordinate
     }
 }

@@ -103,8 +103,9 @@ impl Recorded {
     ) -> f64 {
         let terms = self.values.iter().zip(predicted).zip(weights);
         let chi2: f64 = terms.map(|((m, p), weight)| weight * (m - p).norm_sqr()).sum();
-        let penalties = parameters.iter().zip(coordinates).map(|(parameter, at)| parameter.penalty(*at));
-        chi2 + penalties.sum::<f64>()
+        let departures =
+            parameters.iter().zip(coordinates).map(|(parameter, at)| parameter.squared_departure(*at));
+        chi2 + departures.sum::<f64>()
     }
 
     /// Σ w|a|² of a change of the values.

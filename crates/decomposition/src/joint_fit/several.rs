@@ -227,7 +227,8 @@ fn is_plausible(problem: &Problem, point: &Point) -> bool {
     let own = problem.own();
     let known = problem.parameters[own..].iter().zip(&point.coordinates[own..]);
     let known = known.filter(|(parameter, _)| parameter.precision > 0.0);
-    let (squares, count) =
-        known.fold((0.0, 0.0), |(sum, count), (parameter, at)| (sum + parameter.penalty(*at), count + 1.0));
+    let (squares, count) = known.fold((0.0, 0.0), |(sum, count), (parameter, at)| {
+        (sum + parameter.squared_departure(*at), count + 1.0)
+    });
     problem.per_degree(point) < DOUBTFUL_FIT && squares <= PLAUSIBLE_DEPARTURE * f64::max(count, 1.0)
 }

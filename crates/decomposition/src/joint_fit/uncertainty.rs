@@ -49,7 +49,7 @@ pub(super) fn tolerance_inflation(
     let (mut squares, mut expected) = (0.0, 0.0);
     for (index, parameter) in parameters.iter().enumerate().skip(own) {
         if parameter.precision > 0.0 {
-            squares += parameter.penalty(at[index]);
+            squares += parameter.squared_departure(at[index]);
             expected += (1.0 - parameter.precision * covariance.at(index, index)).clamp(0.0, 1.0);
         }
     }

@@ -187,7 +187,7 @@ fn location(problem: &Problem, state: &Iterate) -> Location {
     Location {
         site: state.parameters.site.clone(),
         chi2_per_dof,
-        departures: state.parameters.penalty(),
+        departures: state.parameters.squared_departures(),
         degrees,
         p_value: if degrees == 0 {
             1.0

@@ -142,7 +142,7 @@ impl Problem<'_> {
     pub(super) fn objective(&self, state: &Iterate, weights: &[f64]) -> f64 {
         let terms = state.modelled.iter().zip(&self.recorded.measured).zip(weights);
         let chi2: f64 = terms.map(|((value, measured), weight)| weight * (measured - value).norm_sqr()).sum();
-        chi2 + state.parameters.penalty()
+        chi2 + state.parameters.squared_departures()
     }
 
     /// The unit in which the abscissa moves, where it does, and its bounds.
@@ -185,7 +185,7 @@ impl Parameters {
     }
 
     /// What the priors charge.
-    pub(super) fn penalty(&self) -> f64 {
+    pub(super) fn squared_departures(&self) -> f64 {
         let tolerances = 0..self.hypothesis.tolerances().len();
         tolerances.map(|a| self.hypothesis.prior(a) * self.hypothesis.coordinates[a].powi(2)).sum()
     }

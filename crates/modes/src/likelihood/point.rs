@@ -25,7 +25,7 @@ pub(super) struct Point {
     gram: Gram,
     pub rows: Vec<RowSolution>,
     pub chi2: f64,
-    penalty: f64,
+    squared_departures: f64,
     /// For the parameters, all else eliminated.
     pub normal: NormalEquations,
     /// For each row of FRFs, the information between its linear unknowns and the parameters.
@@ -48,7 +48,7 @@ impl Point {
             terms,
             rows: Vec::new(),
             chi2: 0.0,
-            penalty: 0.0,
+            squared_departures: 0.0,
             normal: NormalEquations::zero(parameters),
             mixed: Vec::new(),
             gram,
@@ -65,7 +65,7 @@ impl Point {
     }
 
     pub(super) fn target(&self) -> f64 {
-        self.chi2 + self.penalty
+        self.chi2 + self.squared_departures
     }
 
     /// The columns that a linear unknown of the row multiplies in the FRF of column `i`.
@@ -195,7 +195,7 @@ impl Point {
             let away = [(pole.im - centre.im) / -centre.re, (pole.re / centre.re).ln()];
             for (k, (away, std)) in away.into_iter().zip([prior.std.0, prior.std.1]).enumerate() {
                 let (index, scale) = (2 * mode + k, if k == 0 { scale } else { 1.0 });
-                self.penalty += (away / std).powi(2);
+                self.squared_departures += (away / std).powi(2);
                 self.normal.right[index] -= scale * away / (std * std);
                 self.normal.information[index * parameters + index] += (scale / std).powi(2);
             }

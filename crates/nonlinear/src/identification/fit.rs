@@ -38,7 +38,7 @@ impl Fit {
     }
 
     fn with(Iterate { hypothesis, objective, .. }: Iterate, derivatives: Jacobian) -> Self {
-        let chi2 = objective - hypothesis.penalty();
+        let chi2 = objective - hypothesis.squared_departures();
         Fit { hypothesis, chi2, objective, information: derivatives.information }
     }
 
@@ -66,7 +66,7 @@ struct Iterate {
 impl Iterate {
     fn at(view: &View, hypothesis: Hypothesis) -> Option<Self> {
         let residuals = view.residuals(&hypothesis)?;
-        let objective = sum_of_squares(&residuals) + hypothesis.penalty();
+        let objective = sum_of_squares(&residuals) + hypothesis.squared_departures();
         Some(Iterate { hypothesis, residuals, objective })
     }
 }

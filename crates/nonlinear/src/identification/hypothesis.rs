@@ -91,8 +91,8 @@ impl Hypothesis {
     }
 
     /// What departures from the stated values cost: Σ (departure/std)².
-    pub(crate) fn penalty(&self) -> f64 {
-        self.parameters.iter().zip(&self.coordinates).map(|(p, at)| p.penalty(*at)).sum()
+    pub(crate) fn squared_departures(&self) -> f64 {
+        self.parameters.iter().zip(&self.coordinates).map(|(p, at)| p.squared_departure(*at)).sum()
     }
 
     /// Step of coordinate `index` for a difference quotient.

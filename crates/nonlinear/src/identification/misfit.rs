@@ -116,7 +116,7 @@ impl<'a> View<'a> {
 
     /// χ² of the data and the priors.
     pub(crate) fn objective(&self, hypothesis: &Hypothesis) -> Option<f64> {
-        self.chi2(hypothesis).map(|chi2| chi2 + hypothesis.penalty())
+        self.chi2(hypothesis).map(|chi2| chi2 + hypothesis.squared_departures())
     }
 
     /// The residuals; `None` for a hypothesis without a finite motion.
