@@ -312,8 +312,8 @@ fn with_residual_noise(
 ) -> (Observed, Observed, Likelihood) {
     let n = observed.lines();
     let mut better = observed.clone();
-    let untold: Vec<usize> = (0..noise.len()).filter(|&frf| noise[frf].is_by_scatter()).collect();
-    for (frf, variances) in noise::variances(&observed, &condensed, &fit, &untold) {
+    let by_scatter: Vec<usize> = (0..noise.len()).filter(|&frf| noise[frf].is_by_scatter()).collect();
+    for (frf, variances) in noise::variances(&observed, &condensed, &fit, &by_scatter) {
         for (weight, variance) in better.weights[frf * n..(frf + 1) * n].iter_mut().zip(variances) {
             *weight = if *weight > 0.0 { 1.0 / variance } else { 0.0 };
         }

@@ -191,11 +191,11 @@ fn in_its_terms(fit: &JointFit) -> Option<String> {
 
 fn of_misfit(fit: &JointFit) -> Vec<String> {
     let mut all = Vec::new();
-    if fit.strain > 1.0 {
+    if fit.tolerance_inflation > 1.0 {
         all.push(format!(
                 "the fixture's quantities would be farther from what is stated than chance takes them: the ± are {} times as large as noise and tolerances make \
                  them; something is stated wrongly or left out, which `jointscope diagnose` may name",
-                significant(fit.strain.sqrt(), 2)
+                significant(fit.tolerance_inflation.sqrt(), 2)
             ));
     }
     if fit.inflation > 1.0 {

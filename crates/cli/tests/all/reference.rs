@@ -110,10 +110,11 @@ fn every_key_of_a_result_file_is_described_and_every_example_is_what_its_command
             assert!(file.ends_with(&part.heading), "{file} stands below {}", part.heading);
             let mut keys: BTreeSet<String> = written.as_object().unwrap().keys().cloned().collect();
             let described = part.words();
-            let untold: Vec<&String> =
+            let undescribed: Vec<&String> =
                 keys.iter().filter(|key| !["notes", "made"].contains(&key.as_str())).collect();
-            let untold: Vec<_> = untold.into_iter().filter(|key| !described.contains(key.as_str())).collect();
-            assert!(untold.is_empty(), "{}: not described: {untold:?}", part.heading);
+            let undescribed: Vec<_> =
+                undescribed.into_iter().filter(|key| !described.contains(key.as_str())).collect();
+            assert!(undescribed.is_empty(), "{}: not described: {undescribed:?}", part.heading);
             // The one joint has a table of its own.
             keys.extend(written["joint"].as_object().into_iter().flat_map(|joint| joint.keys().cloned()));
             let missing: Vec<&str> = part.promised().filter(|key| !keys.contains(*key)).collect();

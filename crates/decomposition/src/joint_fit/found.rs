@@ -33,7 +33,7 @@ pub struct JointFit {
     pub inflation: f64,
     /// What the posterior covariance was multiplied by because the fixture's quantities are farther from what is stated than chance takes them; 1 where they are not.
     #[serde(skip)]
-    pub strain: f64,
+    pub tolerance_inflation: f64,
     /// Whether c would give out energy if it were free, and was held to c = v vᵀ.
     #[serde(rename = "on_the_boundary_of_passive")]
     pub is_on_the_boundary: bool,
@@ -143,7 +143,7 @@ impl JointFit {
 
     /// Whether noise and tolerances explain the FRFs.
     pub fn explains(&self) -> bool {
-        self.inflation == 1.0 && self.strain == 1.0
+        self.inflation == 1.0 && self.tolerance_inflation == 1.0
     }
 
     /// The loss factor ωC/K of an element in the middle of the band and its standard deviation, with that of all that [`covariance`](Self::covariance) holds; nothing for an

@@ -271,7 +271,7 @@ impl Outcome<'_> {
             ),
             chi2_per_dof: self.inflated.chi2_per_dof,
             inflation: self.inflated.by,
-            strain: free.tolerance_inflation,
+            tolerance_inflation: free.tolerance_inflation,
             is_on_the_boundary: false,
             quantities: stated.quantities.clone(),
             unmoved: self.unmoved.iter().map(|own| UnmovedQuantity::of(own, setup.fixture)).collect(),

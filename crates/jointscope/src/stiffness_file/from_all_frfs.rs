@@ -26,7 +26,7 @@ pub(super) struct JointEntry<'a> {
 
 impl<'a> JointEntry<'a> {
     pub(super) fn of(fit: &'a JointFit) -> Self {
-        let (inflation, strain) = (fit.inflation, fit.strain);
+        let (inflation, strain) = (fit.inflation, fit.tolerance_inflation);
         JointEntry {
             fit,
             std: pair(fit.std()),
