@@ -1,3 +1,5 @@
+//! The sentence with which a command ends that did nothing.
+
 use std::error::Error;
 use std::fmt;
 use std::num::{IntErrorKind, ParseFloatError, ParseIntError};

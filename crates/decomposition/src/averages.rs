@@ -1,3 +1,5 @@
+//! A joint's K and C as means over a band, plain (35, 42) and weighted, with the deviations that noise gives them.
+
 use crate::spectrum::{element_std, sensitivity};
 use crate::{DecompositionError, JointSpectrum, Relation};
 use jointscope_averaging::{AveragingError, Band, mean, quietest_band, weighted_mean};

@@ -1,3 +1,5 @@
+//! One estimate of K and C whatever the method, its deviation split into what noise and what the fixture's tolerances do.
+
 use crate::settings::estimates::NOT_DETERMINED;
 use jointscope_inference::Z95;
 use jointscope_linalg::RealMatrix2;

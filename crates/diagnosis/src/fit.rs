@@ -1,3 +1,5 @@
+//! A fitted hypothesis with χ² and objective, as searches and comparisons pass it on.
+
 use crate::penalty::parameter_penalty;
 use crate::settings::Settings;
 use crate::{Hypothesis, Observation};

@@ -1,3 +1,5 @@
+//! Derivatives of the FRFs by quantities and effects: from one solution of the model where it has them, else by differences.
+
 use crate::{Hypothesis, Observation};
 use jointscope_inference::NormalEquations;
 use jointscope_lumped::Vicinity;

@@ -1,3 +1,5 @@
+//! What hits lack where no FRFs can be estimated of them.
+
 use jointscope_spectra::SpectraError;
 
 use crate::settings::hits::FEWEST_SAMPLES;

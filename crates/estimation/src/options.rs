@@ -1,3 +1,5 @@
+//! What the analyst chooses of an estimation: estimator, weights, baseline, windows, and hits to keep or leave out.
+
 /// How an FRF follows from the spectra of force and response.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Estimator {

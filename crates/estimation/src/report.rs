@@ -1,3 +1,5 @@
+//! What is said of each hit and each excitation after an estimation: faults, use, and force.
+
 use jointscope_spectra::Channel;
 
 use crate::Fault;

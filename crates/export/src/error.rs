@@ -1,3 +1,5 @@
+//! What keeps a joint or a repaired fixture from being exported; some of it `--anyway` overrides.
+
 use crate::{Form, Program};
 
 /// Why nothing is exported.

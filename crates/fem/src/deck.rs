@@ -1,3 +1,5 @@
+//! The mesh for CalculiX or Abaqus, against which our modes are checked.
+
 use crate::Mesh;
 use std::fmt::Write;
 

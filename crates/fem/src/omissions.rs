@@ -1,3 +1,5 @@
+//! What a solid has and the lumped model has not, switched off one by one to see what each is worth.
+
 use crate::{Mesh, Part};
 
 /// What the lumped model leaves out, switched off in the solid: one at a time it shows what each is worth, all together the twin is the

@@ -1,3 +1,5 @@
+//! A parameter of what was found, with deviation and interval; of a vague one only the order of magnitude is known.
+
 use jointscope_fixture::{Dof, ParameterRange, ParameterSpec};
 use jointscope_inference::{Z95, interval95};
 use serde::Serialize;

@@ -1,3 +1,5 @@
+//! What was found and what else it may be. The evidence is a type of its own for each kind of data.
+
 use crate::Estimate;
 use jointscope_fixture::Effect;
 use serde::Serialize;

@@ -1,3 +1,5 @@
+//! The four things that a diagnosis can conclude, and the judgement on data that no fit saw.
+
 use serde::Serialize;
 
 /// What a diagnosis concludes.

@@ -1,3 +1,5 @@
+//! Formats of recordings, told by a file's first bytes and not by its name; what people mistake for a recording gets a hint.
+
 use crate::ImportError;
 
 /// Format of a file, told by its bytes.

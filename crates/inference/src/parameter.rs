@@ -1,3 +1,5 @@
+//! A parameter of a fit: the coordinate that moves it, its bounds, and its prior in units of its deviation.
+
 /// How a physical quantity follows the coordinate by which a fit moves it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Transform {

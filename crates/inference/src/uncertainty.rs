@@ -1,3 +1,5 @@
+//! What a fit leaves uncertain: the covariance by its curvature, and by the fits without each block of the data.
+
 use num_complex::Complex64;
 
 /// Covariance of the coordinates of a fit.

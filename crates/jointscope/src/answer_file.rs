@@ -1,3 +1,5 @@
+//! `diagnosis.json`, whichever way led to the answer.
+
 use crate::diagnosis_file;
 use crate::nonlinear_file::nonlinear_file;
 use crate::stepped_file::stepped_file;

@@ -1,3 +1,5 @@
+//! `check.json`: totals, modes, meanings of numbers and what is odd in each channel.
+
 use crate::file::value;
 use jointscope_check::Check;
 use serde_json::Value;

@@ -1,3 +1,5 @@
+//! `comparison.json`: the results of a comparison with the sentences that the page says of them.
+
 use jointscope_comparison::{
     Apart, Caution, Comparison, ElementRanking, Equality, LawOfAll, Matrix, ModelRatios, Pair, SharedBody,
     Source, Specimens,

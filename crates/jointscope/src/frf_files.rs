@@ -1,3 +1,5 @@
+//! FRFs that `--also uff` writes beside an answer: what was measured, what models make of it, and the difference.
+
 use jointscope_check::{RecordingCheck, fixture_frfs};
 use jointscope_decomposition::{FittedFrfs, JointFit};
 use jointscope_fixture::Fixture;

@@ -1,3 +1,5 @@
+//! `diagnosis.json` of hits of several strengths, where a joint may have a law of amplitude.
+
 use crate::file::{value, with_sentence};
 use jointscope_findings::{HeldOut, Verdict, by_model};
 use jointscope_nonlinear::{

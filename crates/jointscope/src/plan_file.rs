@@ -1,3 +1,5 @@
+//! `plan.json`: what is asked, and each measurement with what is expected of it.
+
 use crate::file::value;
 use jointscope_plan::Plan;
 use serde_json::Value;

@@ -1,3 +1,5 @@
+//! `diagnosis.json` of stepped sines at several levels, with what each level says.
+
 use crate::file::{value, with_sentence};
 use jointscope_findings::{HeldOut, Verdict, by_model};
 use jointscope_nonlinear::{LevelFinding, LevelResult, SteppedDiagnosis, Tried};

@@ -1,3 +1,5 @@
+//! The matrix exponential, by which linear motion is carried over a time step exactly.
+
 /// Terms of the Taylor series: of a matrix of norm 1/2 the next is below 1e-19.
 const TERMS: usize = 14;
 

@@ -1,3 +1,5 @@
+//! Eigenvalues of a complex matrix without symmetry, checked: their sum must be its trace.
+
 use faer::Mat;
 use num_complex::Complex64;
 

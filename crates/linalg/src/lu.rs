@@ -1,3 +1,5 @@
+//! The complex LU of one spectral line, its memory kept for the next.
+
 use num_complex::Complex64;
 
 /// The matrix has no inverse to working precision.

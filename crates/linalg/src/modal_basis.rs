@@ -1,3 +1,5 @@
+//! Undamped modes as the checked eigenproblems return them, mass-normalised, and why there may be none.
+
 /// Why the eigenproblem has no trustworthy answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum EigenError {

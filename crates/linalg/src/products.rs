@@ -1,3 +1,5 @@
+//! The product A·Bᵀ by the kernels of faer.
+
 use faer::MatRef;
 
 /// All products Σ_k a_ik b_jk of the rows of two square matrices, row-major: A·Bᵀ.

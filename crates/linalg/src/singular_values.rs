@@ -1,3 +1,5 @@
+//! Singular values, checked: the sum of their squares must be the matrix's norm.
+
 use faer::Mat;
 use num_complex::Complex64;
 

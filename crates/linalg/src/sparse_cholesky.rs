@@ -1,3 +1,5 @@
+//! Factors of sparse symmetric matrices by supernodes; the order of elimination is shared by all matrices of one pattern.
+
 use std::sync::Arc;
 
 use faer::dyn_stack::{MemBuffer, MemStack};

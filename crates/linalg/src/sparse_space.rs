@@ -1,3 +1,5 @@
+//! The space of Lanczos vectors of the sparse eigenproblem, kept orthonormal in the mass matrix.
+
 use crate::{SparseCholesky, SparseSymmetric, dot};
 
 /// M-orthonormal vectors with their images under M: the known motions, and those of the search.

@@ -1,3 +1,5 @@
+//! A joint's 4×4 dynamic stiffness for those above that need no assembly, such as an export to finite elements.
+
 use crate::joint::JointDynamics;
 use jointscope_fixture::{Fixture, Joint};
 use num_complex::Complex64;

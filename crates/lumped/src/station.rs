@@ -1,3 +1,5 @@
+//! Where forces act on the assembly and where motions are read.
+
 use jointscope_spectra::Dof;
 
 /// A place on the assembly and a direction there: where it is pushed, or where its motion is read.

@@ -1,3 +1,5 @@
+//! What FRFs lack where no modes can be told of them.
+
 use jointscope_spectra::in_text;
 
 /// Why no modes can be told.

@@ -1,3 +1,5 @@
+//! When there is nothing to plan, or what a question names does not exist.
+
 use jointscope_diagnosis::PredictionError;
 
 /// Why there is no plan.

@@ -1,3 +1,5 @@
+//! A measurement that a plan suggests, and what is expected of it, as `plan.json` states it.
+
 use crate::measure::Measure;
 use crate::settings::outcome::SURE;
 use serde::Serialize;

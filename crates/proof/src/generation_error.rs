@@ -1,3 +1,5 @@
+//! What keeps `prove` from drawing its concealed cases.
+
 use jointscope_fem::FemError;
 use jointscope_rig::{HammerError, StructureError};
 use jointscope_spectra::SpectraError;

@@ -1,3 +1,5 @@
+//! Units that the analyst states for files which state none: `--assume-units`.
+
 use jointscope_spectra::FrfForm;
 
 use crate::unit::{Dimension, Unit};

@@ -1,3 +1,5 @@
+//! The way back: FRFs of a fixture's points as functions of a universal file.
+
 use jointscope_spectra::{Channel, Dof, FrfForm, FrfSet, SpectralLines};
 use jointscope_uff::{
     Abscissa, Axis, Data, Dataset58, Encoding, FunctionType, Node, ReadError, WriteError, data_type, read,

@@ -1,3 +1,5 @@
+//! Why time histories are no hits: each message says what the files hold instead and what to export.
+
 use jointscope_hits::HitError;
 
 use crate::{FunctionError, Place, RecordingError};

@@ -1,3 +1,5 @@
+//! Levels of a stepped-sine test: the amplitude of force or response that was held, from ID line 4.
+
 use std::fmt;
 
 use crate::unit::{Dimension, Unit};

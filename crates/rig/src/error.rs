@@ -1,3 +1,5 @@
+//! What the laboratory refuses: structures that cannot exist, and hammers that cannot strike.
+
 use jointscope_fixture::FixtureError;
 use jointscope_linalg::EigenError;
 use jointscope_spectra::SpectraError;

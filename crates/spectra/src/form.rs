@@ -1,3 +1,5 @@
+//! Receptance, mobility and accelerance, and the powers of iω between them.
+
 use num_complex::Complex64;
 
 /// What an FRF's numerator is: displacement, velocity or acceleration, each per unit of force.

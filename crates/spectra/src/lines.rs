@@ -1,3 +1,5 @@
+//! The frequencies at which FRFs are known, and how a frequency is written.
+
 use crate::SpectraError;
 use std::f64::consts::TAU;
 use std::sync::Arc;

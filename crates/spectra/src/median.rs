@@ -1,3 +1,5 @@
+//! The median that noise models and plausibility checks take over lines, without a sorted copy.
+
 /// The median of values over lines, the larger of the two in the middle of an even number; `None` of none. The order of the values changes.
 pub fn median(values: &mut [f64]) -> Option<f64> {
     let middle = values.len() / 2;

@@ -1,3 +1,5 @@
+//! One row of the paper's tables as the program computes it: an example's FRFs from lumped model and solid, decomposed and averaged.
+
 use crate::TablesError;
 use crate::example::Example;
 use crate::paper::Elements;

@@ -1,3 +1,5 @@
+//! The paper's examples as fixtures: the paper prints no dimensions, so they were inferred from its cells.
+
 use crate::TablesError;
 use jointscope_averaging::Band;
 use jointscope_fixture::Fixture;

@@ -1,3 +1,5 @@
+//! The column EXP: a user's own `stiffness.json` of one of the paper's examples.
+
 use crate::paper::{Elements, STIFFNESS};
 use serde_json::Value;
 

@@ -1,3 +1,5 @@
+//! All rows of the paper's Tables 1 to 6, the paper's cells beside the program's.
+
 use crate::paper::{DAMPING, ELEMENTS, Elements, GROUPS, STIFFNESS, STIFFNESS_UNITS};
 use crate::{Extracted, Measured, ProgramRow, Reach, Side, TablesError, examples};
 use jointscope_fem::MeshOptions;

@@ -1,3 +1,5 @@
+//! The elements of k and c that the likelihood is maximised over; where c would give out energy, c = v vᵀ takes its place.
+
 use jointscope_linalg::{Matrix2, RealMatrix2};
 
 /// (k11, k12, k22, c11, c12, c22), or with c = v vᵀ on the boundary of what is passive.

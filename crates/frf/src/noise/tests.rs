@@ -1,3 +1,5 @@
+//! Variances of FRFs against noise that is known, since it was added here: errors divided by their deviations must have a variance of one.
+
 use super::*;
 use jointscope_samples::Noise;
 

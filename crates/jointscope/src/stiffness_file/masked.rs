@@ -1,3 +1,5 @@
+//! Lines that could not be solved, as `stiffness.json` lists them with the reason.
+
 use serde::Serialize;
 
 /// A line that could not be solved, Hz.

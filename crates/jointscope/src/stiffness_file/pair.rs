@@ -1,3 +1,5 @@
+//! K and C side by side, as every part of `stiffness.json` has them.
+
 use jointscope_comparison::MatrixPair;
 use jointscope_linalg::RealMatrix2;
 

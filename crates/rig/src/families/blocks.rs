@@ -1,3 +1,5 @@
+//! Random fixtures of steel blocks: several in a row with beams between them, or one at the end of a bar.
+
 use super::elastic::elastic_frequencies;
 use super::statement::{abscissa, damping, known_to, stated, steel_beam};
 use crate::StructureError;

@@ -1,3 +1,5 @@
+//! Random frames: storeys that only translate, with springs between them.
+
 use super::elastic::elastic_frequencies;
 use super::statement::{damping, known_to, stated};
 use crate::StructureError;

@@ -1,3 +1,5 @@
+//! Damping of the laboratory's structures: loss factors, Rayleigh's matrix, and the matrix that gives modes their stated ratios.
+
 use super::{Assembly, Row};
 use crate::StructureError;
 use jointscope_fixture::{Damping, Quantity, RatiosOf};

@@ -1,3 +1,5 @@
+//! Where the nodes of a beam body lie: at everything that is attached to it, and as close between as its bending waves ask for.
+
 use jointscope_fixture::{BeamBody, BodyKind, Effect, EffectKind, Fixture, Place};
 use std::f64::consts::TAU;
 

@@ -1,3 +1,5 @@
+//! Motions of points as rows over the coordinates, by which springs, sensors and forces are attached.
+
 /// A motion as a combination of coordinates: pairs of a coordinate's index and its factor.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Row(Vec<(usize, f64)>);
