@@ -107,18 +107,6 @@ impl Dataset58 {
             units: None,
         }
     }
-
-    /// What the ordinates are multiplied by to become SI, by the units in force; `None` if the file states none.
-    pub fn si_per_ordinate(&self) -> Option<f64> {
-        self.units.as_ref().map(|units| {
-            units.si_per_ratio(
-                &self.ordinate_axis,
-                self.response.direction,
-                &self.denominator_axis,
-                self.reference.direction,
-            )
-        })
-    }
 }
 
 /// A nodal degree of freedom.

@@ -1,7 +1,5 @@
 //! Dataset 164: the unit system of the datasets that follow it.
 
-use crate::Axis;
-
 /// How the temperatures of a file are counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TemperatureMode {
@@ -48,24 +46,6 @@ impl Units {
         }
     }
 
-    /// A length, or a displacement, velocity or acceleration, in SI (m, m/s, m/s²).
-    pub fn length_to_si(&self, value: f64) -> f64 {
-        value / self.length_factor
-    }
-
-    /// A force in N.
-    pub fn force_to_si(&self, value: f64) -> f64 {
-        value / self.force_factor
-    }
-
-    /// A temperature in K; the offset counts for relative scales only.
-    pub fn temperature_to_si(&self, value: f64) -> f64 {
-        match self.temperature_mode {
-            TemperatureMode::Absolute => value / self.temperature_factor,
-            TemperatureMode::Relative => (value + self.temperature_offset) / self.temperature_factor,
-        }
-    }
-
     /// What a quantity with the given exponents of length, force and temperature is multiplied by to become SI.
     /// Temperatures count as differences here.
     pub fn si_per_unit(&self, exponents: [i32; 3]) -> f64 {
@@ -74,24 +54,12 @@ impl Units {
             * self.force_factor.powi(force)
             * self.temperature_factor.powi(temperature))
     }
-
-    /// What the values of an FRF are multiplied by to become SI: `numerator` along the direction of the response over
-    /// `denominator` along that of the reference.
-    pub(crate) fn si_per_ratio(
-        &self,
-        numerator: &Axis,
-        response: i32,
-        denominator: &Axis,
-        reference: i32,
-    ) -> f64 {
-        self.si_per_unit(numerator.unit_exponents(response))
-            / self.si_per_unit(denominator.unit_exponents(reference))
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Axis;
 
     /// Factors of the example printed in the specification of dataset 164.
     fn foot_and_pound_force() -> Units {
@@ -113,17 +81,17 @@ mod tests {
     #[test]
     fn values_are_divided_by_their_factor_to_become_si() {
         let units = foot_and_pound_force();
-        check(0.3048, units.length_to_si(1.0));
-        check(4.448222, units.force_to_si(1.0));
-        check(273.15, units.temperature_to_si(32.0));
+        check(0.3048, units.si_per_unit([1, 0, 0]));
+        check(4.448222, units.si_per_unit([0, 1, 0]));
+        check(5.0 / 9.0, units.si_per_unit([0, 0, 1]));
     }
 
     #[test]
     fn an_accelerance_in_feet_and_pounds_becomes_si() {
         let units = foot_and_pound_force();
-        let translation = units.si_per_ratio(&Axis::acceleration(), 2, &Axis::excitation_force(), -2);
-        check(0.3048 / 4.448222, translation);
-        let rotation = units.si_per_ratio(&Axis::acceleration(), 6, &Axis::excitation_force(), 6);
-        check(1.0 / (4.448222 * 0.3048), rotation);
+        let acceleration = |direction| units.si_per_unit(Axis::acceleration().unit_exponents(direction));
+        let force = |direction| units.si_per_unit(Axis::excitation_force().unit_exponents(direction));
+        check(0.3048 / 4.448222, acceleration(2) / force(-2));
+        check(1.0 / (4.448222 * 0.3048), acceleration(6) / force(6));
     }
 }
