@@ -205,20 +205,8 @@ impl Geometry {
     }
 }
 
-impl PlacedNode {
-    /// The direction (±1 to ±3) of this node that points along a global axis to within five degrees.
-    pub fn direction_along(&self, axis: SpatialAxis) -> Option<i32> {
-        let directions = self.directions?;
-        let cosine = |direction: &[f64; 3]| direction[axis.index()];
-        let (number, direction) = (1..).zip(&directions).find(|(_, d)| cosine(d).abs() > NEARLY_PARALLEL)?;
-        Some(if cosine(direction) > 0.0 { number } else { -number })
-    }
-}
-
 /// Places that are one place, m.
 const SAME_PLACE: f64 = 1e-6;
-/// Cosine of five degrees.
-const NEARLY_PARALLEL: f64 = 0.9962;
 
 fn metres(unit: &str) -> Result<f64, GeometryError> {
     Unit::parse(unit)
