@@ -115,7 +115,7 @@ impl BlockFrf {
 ///
 /// Weights are one over the variances that `frfs` carries; without variances, all equal. An FRF counts at a
 /// line only where its coherence, if recorded, is above zero. With exactly as many FRFs as elements the
-/// answer is that of [`crate::from_four_frfs`].
+/// answer is that of the paper's differences (eq 19, 22, 23).
 ///
 /// # Errors
 /// See [`RigidMotionError`]. Single lines that cannot be solved are masked instead.
@@ -216,7 +216,6 @@ fn check_geometry(layout: &BlockLayout, needed: usize) -> Result<(), RigidMotion
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::from_four_frfs;
     use jointscope_spectra::FrfPair;
 
     const SENSORS: [f64; 3] = [0.0, -0.06, -0.03];
@@ -259,13 +258,31 @@ mod tests {
         Matrix2::new(c(1.0, 0.2), c(-0.3, 4.0), c(5.0, -2.0), c(30.0, 11.0))
     }
 
+    /// H41 from the responses at points 4 and 3 to a force at 1 and to one at 2, `sensors` from 3 to 4 and `hits` from 1 to 2, m: rotations are
+    /// differences of sensors (19), moments differences of forces (22, 23).
+    fn by_differences(
+        per_force_1: [Complex64; 2],
+        per_force_2: [Complex64; 2],
+        sensors: f64,
+        hits: f64,
+    ) -> ComplexMatrix2 {
+        let rotation = |[right, left]: [Complex64; 2]| (right - left) / sensors;
+        let per_moment = |at_2: Complex64, at_1: Complex64| (at_2 - at_1) / hits;
+        Matrix2::new(
+            per_force_1[0],
+            per_moment(per_force_2[0], per_force_1[0]),
+            rotation(per_force_1),
+            per_moment(rotation(per_force_2), rotation(per_force_1)),
+        )
+    }
+
     #[test]
     fn four_frfs_are_the_exactly_determined_case_of_eq_23() {
         let set =
             frfs(known(), &SENSORS[..2], &HITS[..2], 0.01).with_variance(vec![1.0, 9.0, 4.0, 0.5]).unwrap();
         let fit = fit_rigid_motion(&set, &layout(&SENSORS[..2], &HITS[..2])).unwrap();
         let v = |i: usize| set.values(i)[0];
-        let direct = from_four_frfs([v(0), v(1)], [v(2), v(3)], 0.06, 0.058);
+        let direct = by_differences([v(0), v(1)], [v(2), v(3)], 0.06, 0.058);
         assert!((fit.values[0] - direct).norm_squared().sqrt() < 1e-11);
         assert_eq!((fit.surplus, fit.rigidity()), (0, None));
     }
