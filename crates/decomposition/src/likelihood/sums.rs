@@ -127,7 +127,9 @@ mod tests {
                     let by: Vec<Complex64> = by_k.into_iter().chain(by_k.map(|d| s * d)).collect();
                     let free: Vec<Complex64> =
                         rows.iter().map(|row| row.iter().zip(&by).map(|(d, by)| by * d).sum()).collect();
-                    plain.add_complex(1.5, residual, &free);
+                    for part in [|z: &Complex64| z.re, |z: &Complex64| z.im] {
+                        plain.add(1.5, part(&residual), &free.iter().map(part).collect::<Vec<_>>());
+                    }
                 }
                 let found = sums.equations(&parameters);
                 for (a, b) in found.information.iter().zip(&plain.information).chain(found.right.iter().zip(&plain.right)) {
