@@ -1,7 +1,7 @@
 //! What was found, for a finite-element model: the joint of a decomposition, or what the repaired fixture of a diagnosis has in it, as elements of
 //! Nastran, ANSYS, Abaqus and CalculiX, or as plain matrices.
 //!
-//! * [`of_decomposition`], [`of_decompositions`], [`of_diagnosis`]: an [`Export`] of what `stiffness.json`, or `diagnosis.json` and `repaired.json`, hold;
+//! * [`of_decompositions`], [`of_diagnosis`]: an [`Export`] of what `stiffness.json`, or `diagnosis.json` and `repaired.json`, hold;
 //! * [`Joint`]: matrices on d = u_to − R·u_from, their [`ElasticCentre`], their 4×4 form on [`both_ends`];
 //! * [`write()`]: the text for a [`Program`].
 //!
@@ -38,7 +38,7 @@ mod program;
 mod repaired_joint;
 mod write;
 
-pub use decomposition::{of_decomposition, of_decompositions};
+pub use decomposition::of_decompositions;
 pub use diagnosis::of_diagnosis;
 pub use error::ExportError;
 pub use joint::{Covariance, ElasticCentre, Joint, JointEnd, JointLine, both_ends};

@@ -1,7 +1,7 @@
 //! Joints to export, and the 4×4 matrices that they should have.
 
 use jointscope_comparison::Decomposed;
-use jointscope_export::{Export, ExportError, ExportOptions, of_decomposition};
+use jointscope_export::{Export, ExportError, ExportOptions, of_decompositions};
 use serde_json::{Value, json};
 
 pub(crate) type Matrix = [[f64; 2]; 2];
@@ -31,7 +31,7 @@ pub(crate) fn file(k: Matrix, c: Matrix) -> Value {
 }
 
 pub(crate) fn exported(file: &Value, options: &ExportOptions) -> Result<Export, ExportError> {
-    of_decomposition(&Decomposed::of("J", file).unwrap(), options)
+    of_decompositions(&[Decomposed::of("J", file).unwrap()], options)
 }
 
 /// `[−R, I]ᵀ m [−R, I]`, written out.
