@@ -21,6 +21,21 @@ use jointscope_spectra::SpectraError;
 const UNSEEN: &str = "the judgement on what is held out";
 const PLACES: &str = "the places of what is left";
 
+/// The fixture as it is given.
+#[derive(Clone, Copy)]
+struct Given<'a> {
+    fixture: &'a Fixture,
+    /// Whether its bare numbers are exact.
+    exact: bool,
+}
+
+impl Given<'_> {
+    /// The fixture as it stands and refitted to what `fitter` sees.
+    fn without_effects(self, fitter: &Fitter) -> Option<Search> {
+        Search::without_effects(fitter, self.fixture, self.exact)
+    }
+}
+
 /// What a search by lines of the whole recording sets out from.
 enum Start<'a> {
     /// The fixture alone, or what the search finds that sees less.
@@ -40,29 +55,29 @@ pub(crate) fn judged(
     options: &DiagnosisOptions,
 ) -> Result<Parts, DiagnosisError> {
     let division = Division::of(fitter.observation, options)?;
-    let refitted = Search::without_effects(fitter, fixture, options.exact)
-        .ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
-    let within = refitted.clone().with_wrong_quantities(fitter);
+    let given = Given { fixture, exact: options.exact };
+    let refitted = given.without_effects(fitter).ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
+    let without_effects = refitted.clone().with_wrong_quantities(fitter);
     // Where the fixture as refitted leaves more than noise, the comparison by modes says whether the model itself is in error: if it is, the noise
     // of the lines decides nothing.
     let may_err = !fixture.model_error().is_exact();
-    let modal = match may_err && within.lacks_much(fitter, &within.refitted) {
+    let modal = match may_err && without_effects.lacks_much(fitter, &without_effects.refitted) {
         true => fitter.observation.work().within(fitter.settings.modal.share, || {
-            ModalJudgement::of(fitter, &within.nominal.hypothesis, &within.candidates, None)
+            ModalJudgement::of(fitter, &without_effects.nominal.hypothesis, &without_effects.candidates, None)
         }),
         false => None,
     };
     // Modes lead to the nearest minimum where lines, peak beside peak, may end in another.
-    let within = match &modal {
-        Some(modal) => {
-            Search { candidates: modal.candidates.clone(), ..within }.refitted_from(fitter, &modal.stated[0])
-        }
+    let without_effects = match &modal {
+        Some(modal) => Search { candidates: modal.candidates.clone(), ..without_effects }
+            .refitted_from(fitter, &modal.stated[0]),
         None => refitted.refitted_widely(fitter).with_wrong_quantities(fitter),
     };
-    let of = (fixture, options.exact);
-    let parts = routed(fitter, &within, of, modal.as_ref(), division.as_ref());
+    let parts = routed(fitter, &without_effects, given, modal.as_ref(), division.as_ref());
     Ok(match parts.verdict {
-        Verdict::Unexplained => as_located(fitter, within, of, modal.as_ref(), division.as_ref(), parts),
+        Verdict::Unexplained => {
+            as_located(fitter, without_effects, given, modal.as_ref(), division.as_ref(), parts)
+        }
         _ => parts,
     })
 }
@@ -71,15 +86,15 @@ pub(crate) fn judged(
 /// them or these come down to the noise by quantities far off alone, else as a part.
 fn routed(
     fitter: &Fitter,
-    within: &Search,
-    of: (&Fixture, bool),
-    known: Option<&ModalJudgement>,
+    without_effects: &Search,
+    given: Given,
+    modal: Option<&ModalJudgement>,
     division: Option<&Division>,
 ) -> Parts {
-    let by_lines = |start: Start| by_lines(fitter, within.clone(), of, (start, known), division);
-    let Some(modal) = known.filter(|modal| !modal.needs_nothing()) else { return by_lines(Start::Anew) };
-    let Some((start, is_near)) = from_modes(fitter, within, modal) else {
-        return by_modes(fitter, within, modal, division);
+    let by_lines = |start: Start| by_lines(fitter, without_effects.clone(), given, start, modal, division);
+    let Some(modal) = modal.filter(|modal| !modal.needs_nothing()) else { return by_lines(Start::Anew) };
+    let Some((start, is_near)) = from_modes(fitter, without_effects, modal) else {
+        return by_modes(fitter, without_effects, modal, division);
     };
     let parts = by_lines(start);
     if parts.verdict != Verdict::Unexplained || !modal.names_all() {
@@ -88,13 +103,17 @@ fn routed(
     let left = parts.search.refitted.chi2_per_dof(fitter.observation);
     let bent = left < evidence::explained(fitter.observation, fitter.settings);
     match is_near || bent {
-        true => by_modes(fitter, within, modal, division),
-        false => by_modes(fitter, within, &modal.doubted(), division),
+        true => by_modes(fitter, without_effects, modal, division),
+        false => by_modes(fitter, without_effects, &modal.doubted(), division),
     }
 }
 
 /// Where lines set out from after a comparison by modes, and whether what explains the modes leaves little of the lines; `None` where lines have no say.
-fn from_modes<'a>(fitter: &Fitter, within: &Search, modal: &'a ModalJudgement) -> Option<(Start<'a>, bool)> {
+fn from_modes<'a>(
+    fitter: &Fitter,
+    without_effects: &Search,
+    modal: &'a ModalJudgement,
+) -> Option<(Start<'a>, bool)> {
     // What explains the lines down to their noise without any error of the model needs none: found among the modes, or, where these are dubious, by a
     // search on lines.
     if let Some(exact) = modal.exact(fitter) {
@@ -103,15 +122,16 @@ fn from_modes<'a>(fitter: &Fitter, within: &Search, modal: &'a ModalJudgement) -
     }
     // Where errors of the usual size do not explain the modes, these may have rested in a false minimum, and the names that they hold most probable, or quantities that
     // are wrong, explain the lines down to their noise.
-    if let Some(found) = within.explained_among(fitter, modal.in_question(fitter)) {
+    if let Some(found) = without_effects.explained_among(fitter, modal.in_question(fitter)) {
         return Some((Start::Found(Box::new(found)), false));
     }
     // Where a free fit that needed all it may leaves no doubt of the names, lines find nothing better. Where modes find none and lines lack little, one of all names may do.
     let little = fitter.settings.modal.slight * fitter.observation.degrees() as f64;
-    let may = (modal.is_dubious(fitter) || modal.is_unexplained() && within.refitted.objective < little)
+    let may = (modal.is_dubious(fitter)
+        || modal.is_unexplained() && without_effects.refitted.objective < little)
         && !modal.stands_out(fitter)
         && fitter.observation.work().allows("what lines would find");
-    let search = || Search::searched(fitter, within.clone());
+    let search = || Search::searched(fitter, without_effects.clone());
     let searched = may.then(|| fitter.observation.work().within_rest(OF_DOUBTS, search));
     let explained = searched.as_ref().is_some_and(|search| explains(fitter, &search.repaired, true));
     // Modes that need no error of the model, or that do not tell all there is, beside lines that are not explained: it is not the modes of the model that
@@ -132,21 +152,21 @@ fn from_modes<'a>(fitter: &Fitter, within: &Search, modal: &'a ModalJudgement) -
 /// What nothing explained, once more from the laws that were read at the places which explain most of it: where free scalars find a way, a search is to find it too.
 fn as_located(
     fitter: &Fitter,
-    within: Search,
-    of: (&Fixture, bool),
-    known: Option<&ModalJudgement>,
+    without_effects: Search,
+    given: Given,
+    modal: Option<&ModalJudgement>,
     division: Option<&Division>,
     parts: Parts,
 ) -> Parts {
-    let part = fitter.settings.location.part * within.refitted.objective;
+    let part = fitter.settings.location.part * without_effects.refitted.objective;
     let degrees = fitter.observation.degrees() as f64;
     let places = parts.locations.iter().filter(|place| place.chi2_per_dof * degrees < part);
-    let effects = places.flat_map(|place| place.effects(&within.candidates, of.0));
-    let fit = |effect: Effect| fitter.local(&within.nominal.hypothesis.with(effect), None, part);
+    let effects = places.flat_map(|place| place.effects(&without_effects.candidates, given.fixture));
+    let fit = |effect: Effect| fitter.local(&without_effects.nominal.hypothesis.with(effect), None, part);
     let fits = effects.filter_map(fit).filter(|fit| fit.objective < part);
     let Some(repaired) = fits.min_by(|a, b| a.objective.total_cmp(&b.objective)) else { return parts };
-    let found = Box::new(Search { repaired, ..within.clone() });
-    let again = by_lines(fitter, within, of, (Start::Found(found), known), division);
+    let found = Box::new(Search { repaired, ..without_effects.clone() });
+    let again = by_lines(fitter, without_effects, given, Start::Found(found), modal, division);
     if again.verdict == Verdict::Unexplained { parts } else { again }
 }
 
@@ -196,21 +216,22 @@ pub(crate) fn chance(observation: &Observation, fit: &Fit) -> (f64, f64) {
 /// The diagnosis where the noise of the lines decides, unless what they ask for imitates an error of the model.
 fn by_lines(
     fitter: &Fitter,
-    within: Search,
-    (fixture, exact): (&Fixture, bool),
-    (start, modal): (Start, Option<&ModalJudgement>),
+    without_effects: Search,
+    given: Given,
+    start: Start,
+    modal: Option<&ModalJudgement>,
     division: Option<&Division>,
 ) -> Parts {
     let Fitter { observation, settings, .. } = *fitter;
-    let seen = |known: Option<&ModalJudgement>| {
+    let on_what_is_seen = |of_whole: Option<&ModalJudgement>| {
         let division = division.filter(|_| observation.work().allows(UNSEEN))?;
-        blind(&fitter.on(&division.seen), (fixture, exact), known)
+        blind(&fitter.on(&division.seen), given, of_whole)
     };
     // What sees less goes first where nothing is known, and the whole recording only has to confirm or correct it.
     let anew = matches!(start, Start::Anew);
-    let first = if anew { seen(None) } else { None };
+    let first = if anew { on_what_is_seen(None) } else { None };
     fitter.watch.stage("searching the whole recording");
-    let known = if let Start::Modes(modal, _) = &start { Some(*modal) } else { None };
+    let set_out_from = if let Start::Modes(modal, _) = &start { Some(*modal) } else { None };
     let explaining = modal.filter(|modal| modal.explains());
     // Modes that explain the recording decide as soon as lines ask for what these do not need.
     let imitates =
@@ -218,16 +239,17 @@ fn by_lines(
     let mut search = observation.work().within_rest(OF_STEP_BY_LINES, || match (start, &first) {
         (Start::Searched(search), _) => *search,
         (Start::Modes(modal, Explaining { fit, is_sure }), _) => {
-            let part = Search { repaired: fit, ..modal.search_on(observation, &within, &modal.stated) };
-            let within = Search { is_sure, ..within };
-            let mut search = Search::continued_until(fitter, within, &part, imitates);
+            let among_modes = modal.search_on(observation, &without_effects, &modal.stated);
+            let among_modes = Search { repaired: fit, ..among_modes };
+            let as_sure = Search { is_sure, ..without_effects };
+            let mut search = Search::continued_until(fitter, as_sure, &among_modes, imitates);
             search.told_apart =
                 modal.told_from(&search.repaired.hypothesis, &search.candidates, settings.modal.bases.1);
             search
         }
-        (Start::Found(part), _) => Search::continued(fitter, within, &part),
-        (Start::Anew, Some(part)) => Search::continued_until(fitter, within, part, imitates),
-        (Start::Anew, None) => Search::searched(fitter, within),
+        (Start::Found(found), _) => Search::continued(fitter, without_effects, &found),
+        (Start::Anew, Some(first)) => Search::continued_until(fitter, without_effects, first, imitates),
+        (Start::Anew, None) => Search::searched(fitter, without_effects),
     });
     if let Some(fewer) = without_imitations(fitter, &search, modal) {
         match explaining {
@@ -256,7 +278,7 @@ fn by_lines(
         }
         _ => findings,
     };
-    let blind = if anew { first } else { seen(known) };
+    let blind = if anew { first } else { on_what_is_seen(set_out_from) };
     let held_out = division.zip(blind).and_then(|(d, blind)| d.judge(&blind, &search, observation));
     let unlikely = chance(observation, &search.refitted).1 < settings.evidence.located;
     let locations = match unlikely && observation.work().allows(PLACES) {
@@ -283,46 +305,50 @@ fn by_lines(
     }
 }
 
-/// The search that does not see what is held out: that must not have chosen the names either. Of what the whole recording's modes told, `known`, it may
-/// try the same names.
-fn blind(
-    fitter: &Fitter,
-    (fixture, exact): (&Fixture, bool),
-    known: Option<&ModalJudgement>,
-) -> Option<Search> {
+/// The search that does not see what is held out: that must not have chosen the names either. Where the search of the whole recording set out from its modes,
+/// `of_whole`, it may try the names that these told.
+fn blind(fitter: &Fitter, given: Given, of_whole: Option<&ModalJudgement>) -> Option<Search> {
     fitter.watch.stage("searching without the lines that are held out");
-    let alone = Search::without_effects(fitter, fixture, exact)?;
-    let alone =
-        if known.is_none() { alone.refitted_widely(fitter) } else { alone }.with_wrong_quantities(fitter);
-    let modal = known.and_then(|modal| {
-        let known = modal.known(&fitter.settings.modal);
-        ModalJudgement::of(fitter, &alone.nominal.hypothesis, &alone.candidates, Some(&known))
+    let refitted = given.without_effects(fitter)?;
+    let refitted = if of_whole.is_none() { refitted.refitted_widely(fitter) } else { refitted };
+    let without_effects = refitted.with_wrong_quantities(fitter);
+    let modal = of_whole.and_then(|whole| {
+        let names = whole.known(&fitter.settings.modal);
+        let Search { nominal, candidates, .. } = &without_effects;
+        ModalJudgement::of(fitter, &nominal.hypothesis, candidates, Some(&names))
     });
     let found = modal.and_then(|modal| {
         let Explaining { fit, is_sure } = modal.exact(fitter)?;
-        let part = modal.search_on(fitter.observation, &alone, &modal.stated);
-        Some((Search { repaired: fit, ..part }, is_sure))
+        let among_modes = modal.search_on(fitter.observation, &without_effects, &modal.stated);
+        Some((Search { repaired: fit, ..among_modes }, is_sure))
     });
     Some(match found {
-        Some((part, is_sure)) => Search::continued(fitter, Search { is_sure, ..alone }, &part),
-        None => Search::searched(fitter, alone),
+        Some((among_modes, is_sure)) => {
+            Search::continued(fitter, Search { is_sure, ..without_effects }, &among_modes)
+        }
+        None => Search::searched(fitter, without_effects),
     })
 }
 
-/// The diagnosis where the model's own error decides.
-fn by_modes(fitter: &Fitter, within: &Search, modal: &ModalJudgement, division: Option<&Division>) -> Parts {
+/// The diagnosis where the model's own error decides. `on_lines` is what lines made of the recording: the fixture refitted, or a search.
+fn by_modes(
+    fitter: &Fitter,
+    on_lines: &Search,
+    modal: &ModalJudgement,
+    division: Option<&Division>,
+) -> Parts {
     let Fitter { observation, settings, .. } = *fitter;
     let work = observation.work();
-    let (modal, search) = modal.predicted(fitter, within);
+    let (modal, search) = modal.predicted(fitter, on_lines);
     let judge = |division: &Division| {
         fitter.watch.stage("comparing by modes without what is held out");
         let blind = fitter.on(&division.seen);
         // Of what names nothing, only the refitted fixture is judged.
         let named = search.repaired.hypothesis.effect_count() > 0;
-        let known = if named { modal.known(&settings.modal) } else { Known::default() };
+        let names = if named { modal.known(&settings.modal) } else { Known::default() };
         let judged =
-            ModalJudgement::of(&blind, &within.nominal.hypothesis, &within.candidates, Some(&known))?;
-        let (_, blind) = judged.predicted(&blind, within);
+            ModalJudgement::of(&blind, &on_lines.nominal.hypothesis, &on_lines.candidates, Some(&names))?;
+        let (_, blind) = judged.predicted(&blind, on_lines);
         division.judge(&blind, &search, observation)
     };
     let division = division.filter(|_| work.allows(UNSEEN));
@@ -355,11 +381,12 @@ pub(crate) fn since(
     fixture: &Fixture,
     exact: bool,
 ) -> Result<Parts, DiagnosisError> {
-    let within = Search::as_stated(fitter, fixture, exact).ok_or(DiagnosisError::Baseline)?;
-    let judged = ModalJudgement::since(fitter, &baseline, &within.nominal.hypothesis, &within.candidates);
+    let as_stated = Search::as_stated(fitter, fixture, exact).ok_or(DiagnosisError::Baseline)?;
+    let judged =
+        ModalJudgement::since(fitter, &baseline, &as_stated.nominal.hypothesis, &as_stated.candidates);
     let (modal, before) = judged.ok_or(DiagnosisError::Baseline)?;
     let calibrated = Fit::at(before.calibrated, &baseline).ok_or(DiagnosisError::Baseline)?;
-    let parts = by_modes(fitter, &within, &modal, None);
+    let parts = by_modes(fitter, &as_stated, &modal, None);
     let baseline = Baseline { observation: baseline, calibrated, modes: before.modes };
     Ok(Parts { baseline_error: Some(before.error), baseline: Some(baseline), ..parts })
 }
