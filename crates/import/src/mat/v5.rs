@@ -117,7 +117,8 @@ impl<'a> Elements<'a> {
         Ok(Some(Element { kind, bytes: &self.bytes[start..end], offset }))
     }
 
-    fn expect(&mut self, what: &str) -> Result<Element<'a>, ImportError> {
+    /// The next element; an array without it is damaged.
+    fn required(&mut self, what: &str) -> Result<Element<'a>, ImportError> {
         let offset = self.offset();
         self.next()?.ok_or_else(|| damaged(offset, format!("an array without {what}")))
     }
@@ -167,23 +168,23 @@ fn array(mut elements: Elements, depth: usize) -> Result<(String, Value), Import
     if matches!(class, 16 | 17) {
         return Ok((String::new(), Value::Other("object")));
     }
-    let dims = dimensions(&elements.expect("dimensions")?, big_endian)?;
+    let dims = dimensions(&elements.required("dimensions")?, big_endian)?;
     let count = dims.iter().try_fold(1_usize, |product, dim| product.checked_mul(*dim));
     let count = count.ok_or_else(|| damaged(flags.offset, "an array of impossible size"))?;
-    let name = latin(elements.expect("a name")?.bytes);
+    let name = latin(elements.required("a name")?.bytes);
     let value = match class {
         1 => cells(&mut elements, count, depth)?,
         2 => structs(&mut elements, count, depth)?,
         3 => {
-            let _class_name = elements.expect("a class name")?;
+            let _class_name = elements.required("a class name")?;
             structs(&mut elements, count, depth)?
         }
-        4 => text(&elements.expect("text")?, &dims, big_endian)?,
+        4 => text(&elements.required("text")?, &dims, big_endian)?,
         5 => Value::Other("sparse matrix"),
         6..=15 => {
-            let re = exactly(&elements.expect("values")?, count, big_endian)?;
+            let re = exactly(&elements.required("values")?, count, big_endian)?;
             let im = match complex {
-                true => Some(exactly(&elements.expect("imaginary parts")?, count, big_endian)?),
+                true => Some(exactly(&elements.required("imaginary parts")?, count, big_endian)?),
                 false => None,
             };
             Value::Numbers { dims, re, im }
@@ -220,7 +221,7 @@ fn cells(elements: &mut Elements, count: usize, depth: usize) -> Result<Value, I
 }
 
 fn inner_array(elements: &mut Elements, depth: usize) -> Result<Value, ImportError> {
-    let element = elements.expect("its elements")?;
+    let element = elements.required("its elements")?;
     if element.kind != MI_MATRIX {
         return Err(damaged(element.offset, "an array of arrays that holds something else"));
     }
@@ -229,9 +230,9 @@ fn inner_array(elements: &mut Elements, depth: usize) -> Result<Value, ImportErr
 
 fn structs(elements: &mut Elements, count: usize, depth: usize) -> Result<Value, ImportError> {
     let big_endian = elements.big_endian;
-    let length = elements.expect("the length of its field names")?;
+    let length = elements.required("the length of its field names")?;
     let width = numbers(&length, big_endian)?.first().map_or(0, |width| *width as usize);
-    let names = elements.expect("its field names")?;
+    let names = elements.required("its field names")?;
     if width == 0 && !names.bytes.is_empty() {
         return Err(damaged(length.offset, "field names of no length"));
     }
