@@ -89,12 +89,12 @@ fn with_power_of_ten(value: f64, usable: Option<f64>, stated: Option<f64>) -> St
     let exponent = decimal_exponent(magnitude);
     // Beyond six decimals zeros are what one sees: 0.0010200 ± 0.0000050.
     let fine = exponent < 0 && usable.is_some_and(|std| decimals_for(std, 2) > 6);
-    let plain = magnitude == 0.0 || (-3..6).contains(&exponent) && !fine;
+    let written_out = magnitude == 0.0 || (-3..6).contains(&exponent) && !fine;
     // Two steps: 10^-exponent alone overflows for subnormal values.
     let half = exponent / 2;
     let shift = |x: f64| x / 10f64.powi(half) / 10f64.powi(exponent - half);
-    match (usable, plain) {
-        (None, _) if stated == Some(0.0) => trimmed(&significant(value, digits)),
+    match (usable, written_out) {
+        (None, _) if stated == Some(0.0) => plain(value, digits),
         (None, true) => significant(value, digits),
         (None, false) => format!("{}{}", significant(shift(value), digits), power_of_ten(exponent)),
         (Some(std), true) => plus_minus(value, std),
@@ -157,7 +157,7 @@ pub fn in_column(value: f64, std: impl Into<Option<f64>>, scale: &Scale) -> Stri
     }
     match std.into() {
         Some(std) if std.is_finite() && std > 0.0 => plus_minus(scale.of(value), scale.of(std)),
-        Some(0.0) => trimmed(&significant(scale.of(value), 6)),
+        Some(0.0) => plain(scale.of(value), 6),
         _ => significant(scale.of(value), DIGITS_WITHOUT_STD),
     }
 }
@@ -181,6 +181,11 @@ pub fn significant(value: f64, digits: usize) -> String {
     } else {
         format!("{}{}", minus(mantissa), power_of_ten(exponent))
     }
+}
+
+/// A number of so many significant digits at the most, without the zeros that only rounding put there: `0.5`, `1000`.
+pub fn plain(value: f64, digits: usize) -> String {
+    trimmed(&significant(value, digits))
 }
 
 /// A number with a fixed count of decimals; never a negative zero.

@@ -2,7 +2,7 @@
 
 use jointscope_check::{DrivingPointVerdict, FrfCheck, RecordingCheck};
 
-use crate::format::{percent, quantity, significant, trimmed, with_sign};
+use crate::format::{percent, plain, quantity, significant, with_sign};
 use crate::plot::{Curve, FrfPanes, Role, Style, worst};
 use crate::section::Section;
 use crate::table::Table;
@@ -38,11 +38,7 @@ fn frfs(recording: &RecordingCheck) -> Section {
         .footnote(
             "nrmse: distance from the fixture's FRF as it stands. A narrow resonance that has moved by its width makes 100 % and more. Level: median of recorded over the fixture's. Sign: mean cosine of the angle between them, 1 alike, −1 turned round. Noise: median over the lines.",
         );
-    let lines = format!(
-        "{count} lines from {} to {} Hz.",
-        trimmed(&significant(from, 6)),
-        trimmed(&significant(to, 6))
-    );
+    let lines = format!("{count} lines from {} to {} Hz.", plain(from, 6), plain(to, 6));
     let section = Section::new("FRFs").paragraph(lines).with(table);
     match recording.without_recording.as_slice() {
         [] => section,
@@ -111,8 +107,8 @@ fn mass_line(recording: &RecordingCheck) -> Section {
     section
         .paragraph(format!(
             "From {} to {} Hz the assembly moves nearly as one rigid body; what is left there at 0 Hz is its accelerance as such. {mass}",
-            trimmed(&significant(line.band.0, 4)),
-            trimmed(&significant(line.band.1, 4))
+            plain(line.band.0, 4),
+            plain(line.band.1, 4)
         ))
         .with(
             Table::of(&line.frfs)

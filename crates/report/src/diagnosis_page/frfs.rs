@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 use jointscope_spectra::Dof;
 
 use super::subject::Subject;
-use crate::format::{significant, trimmed};
+use crate::format::{plain, significant};
 use crate::plot::{Curve, FrfPanes, Plot, Role, Style};
 use crate::section::Section;
 
@@ -41,11 +41,7 @@ pub(super) fn judged(subject: &Subject, index: usize) -> String {
         bands.max_by(|a, b| a.chi2_per_dof.partial_cmp(&b.chi2_per_dof).unwrap_or(Ordering::Equal))
     });
     let most = worst.map_or_else(String::new, |band| {
-        format!(
-            ", most from {} to {} Hz",
-            trimmed(&significant(band.from, 4)),
-            trimmed(&significant(band.to, 4))
-        )
+        format!(", most from {} to {} Hz", plain(band.from, 4), plain(band.to, 4))
     });
     let own = if diagnosis.model_error.is_some() { ", the model's own error in it" } else { "" };
     format!("Magnitude. χ² per value (1 is noise{own}): {}{most}.", chi2.join(", "))

@@ -4,7 +4,7 @@ use jointscope_diagnosis::{BandMisfit, Fit};
 use jointscope_wording::Says;
 
 use super::subject::Subject;
-use crate::format::{significant, trimmed};
+use crate::format::plain;
 use crate::section::Section;
 use crate::table::{Cell, Table};
 
@@ -38,7 +38,7 @@ fn map(corner: &str, bands: &[BandMisfit], rows: impl Iterator<Item = Row>) -> T
     let table = Table::of(rows).names(corner, |row| row.0.clone());
     let table = table.shaded("all lines", |row| Cell::misfit(row.1));
     bands.iter().enumerate().fold(table, |table, (index, band)| {
-        let heading = format!("{} to {} Hz", plain(band.from), plain(band.to));
+        let heading = format!("{} to {} Hz", plain(band.from, 4), plain(band.to, 4));
         table.shaded(heading, |row| Cell::misfit(row.2.get(index).and_then(|band| band.chi2_per_dof)))
     })
 }
@@ -68,9 +68,4 @@ fn by_place(subject: &Subject) -> Option<Table<Row>> {
             .caption("What a place leaves unexplained, with one unknown value a line there and no law assumed: χ² per degree of freedom, best place first")
             .footnote(footnote),
     )
-}
-
-/// Four digits, without the zeros that say nothing.
-fn plain(hz: f64) -> String {
-    trimmed(&significant(hz, 4))
 }

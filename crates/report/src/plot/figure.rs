@@ -5,7 +5,7 @@ use maud::{Markup, html};
 
 use super::drawing::Drawing;
 use super::{AVERAGING_BAND, Mark, Plot, Role, Series, Style};
-use crate::format::{percent, significant, trimmed};
+use crate::format::{percent, plain};
 use crate::unit::{Scale, typeset};
 
 /// The figure of a plot; the script finds it by its number and draws into it.
@@ -67,14 +67,14 @@ pub(super) fn mark_key<'a>(mark: &'a Mark, plot: &Plot, scale: &Scale) -> (&'a s
     };
     match mark {
         Mark::Horizontal { label, colour, at } => {
-            let value = with_unit(trimmed(&significant(scale.of(*at), 4)), scale.unit());
+            let value = with_unit(plain(scale.of(*at), 4), scale.unit());
             (label, line(colour.colour(), "M1 5H21"), value)
         }
         Mark::Vertical { label, colour, at } => {
-            (label, line(colour.colour(), "M11 0V10"), with_unit(trimmed(&significant(*at, 5)), &unit))
+            (label, line(colour.colour(), "M11 0V10"), with_unit(plain(*at, 5), &unit))
         }
         Mark::Shaded { label, from, to } => {
-            let [from, to] = [from, to].map(|end| trimmed(&significant(*end, 4)));
+            let [from, to] = [from, to].map(|end| plain(*end, 4));
             let range = format!("{from} to {to}");
             let area = html! { rect x="1" y="0.5" width="20" height="9" fill="var(--shade)" {} };
             (label, swatch(area), with_unit(range, &unit))
@@ -102,7 +102,7 @@ pub(super) fn seen(plot: &Plot, scale: &Scale) -> String {
         (true, _) => "Highest".to_owned(),
         (false, None) => "Mostly".to_owned(),
         (false, Some((from, to))) => {
-            let [from, to] = [from, to].map(|end| trimmed(&significant(end, 4)));
+            let [from, to] = [from, to].map(|end| plain(end, 4));
             format!("Mostly, from {}", with_unit(format!("{from} to {to}"), &typeset(&plot.x.unit)))
         }
     };
@@ -130,14 +130,14 @@ fn seen_of(series: &Series, plot: &Plot, scale: &Scale) -> Option<String> {
         lines.filter(|(x, _)| band.is_none_or(|(from, to)| (from..=to).contains(x))).collect();
     lines.sort_by(|a, b| a.1.total_cmp(&b.1));
     let (last, label) = (lines.len().checked_sub(1)?, &series.label);
-    let number = |y: f64| trimmed(&significant(y, 3));
+    let number = |y: f64| plain(y, 3);
     if !plot.y.is_logarithmic() {
         let [low, high] = MOSTLY.map(|share| number(lines[last * share / 100].1));
         let range = if low == high { low } else { format!("{low} to {high}") };
         return Some(format!("{label} {}", with_unit(range, scale.unit())));
     }
     let (x, y) = lines[last];
-    let (height, place) = (with_unit(number(y), scale.unit()), trimmed(&significant(x, 4)));
+    let (height, place) = (with_unit(number(y), scale.unit()), plain(x, 4));
     let exceeded = plot.marks.iter().find_map(|mark| match mark {
         Mark::Horizontal { label, at, .. } if !label.is_empty() => Some(scale.of(*at)),
         _ => None,
