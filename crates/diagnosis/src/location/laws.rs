@@ -46,6 +46,15 @@ fn same(parameters: &[f64]) -> Vec<f64> {
     parameters.to_vec()
 }
 
+/// A factor by its departure from one.
+fn as_factor(parameters: &[f64]) -> Vec<f64> {
+    vec![1.0 + parameters[0]]
+}
+
+fn constant(_: Line, parameters: &[f64]) -> Complex64 {
+    Complex64::new(parameters[0], 0.0)
+}
+
 /// `count` values from `low` to `high`, evenly on a logarithmic scale.
 fn between(low: f64, high: f64, count: usize) -> impl Iterator<Item = f64> {
     let (from, to) = (low.ln(), high.ln());
@@ -122,7 +131,9 @@ const RESONATOR: Law = Law {
         if !(0.0..1.0).contains(&p[2]) {
             return Complex64::new(f64::NAN, f64::NAN);
         }
-        Delta::Stiffness(PointLaw::Resonator { mass: p[0], omega: p[1].exp(), ratio: p[2] }).at(line.s())
+        let (omega, own) = (line.omega, p[1].exp());
+        let spring = own * own + line.s() * (2.0 * p[2] * own);
+        -omega * omega * p[0] * spring / (spring - omega * omega)
     },
     stated: |p| vec![p[0], p[1].exp() / TAU, p[2]],
 };
@@ -132,7 +143,7 @@ const YIELDING: Law = Law {
     parameters: &[("stiffness", "N/m")],
     proportional: true,
     starts: one,
-    value: |_, p| Complex64::new(p[0], 0.0),
+    value: constant,
     stated: |p| vec![1.0 / p[0]],
 };
 const YIELDING_AND_LOSSY: Law = Law {
@@ -153,8 +164,8 @@ const GAIN: Law = Law {
     parameters: &[("factor", "")],
     proportional: true,
     starts: one,
-    value: |_, p| Complex64::new(p[0], 0.0),
-    stated: |p| vec![1.0 + p[0]],
+    value: constant,
+    stated: as_factor,
 };
 const DELAY: Law = Law {
     name: "a delay",
@@ -192,7 +203,7 @@ const OFFSET: Law = Law {
     parameters: &[("dx", "m")],
     proportional: true,
     starts: one,
-    value: |_, p| Complex64::new(p[0], 0.0),
+    value: constant,
     stated: same,
 };
 const FACTOR: Law = Law {
@@ -201,8 +212,8 @@ const FACTOR: Law = Law {
     parameters: &[("factor", "")],
     proportional: true,
     starts: one,
-    value: |_, p| Complex64::new(p[0], 0.0),
-    stated: |p| vec![1.0 + p[0]],
+    value: constant,
+    stated: as_factor,
 };
 const LOSS: Law = Law {
     name: "a loss factor",
@@ -219,7 +230,10 @@ const RELAXATION: Law = Law {
     parameters: &[("ratio", ""), ("time", "s")],
     proportional: true,
     starts: times,
-    value: |line, p| Delta::Relaxation { ratio: p[0], time: p[1].exp() }.at(line.s()),
+    value: |line, p| {
+        let turned = line.s() * p[1].exp();
+        p[0] * turned / (1.0 + turned)
+    },
     stated: |p| vec![p[0], p[1].exp()],
 };
 
