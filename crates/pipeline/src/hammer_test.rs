@@ -5,6 +5,7 @@ use jointscope_estimation::{
 };
 use jointscope_hits::Hit;
 use jointscope_spectra::{FrfSet, in_text};
+use jointscope_wording::counted;
 
 /// Hammer hits and what was estimated from them.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,10 +36,9 @@ impl HammerTest {
 
     /// `FRFs were estimated from the hits: H1, 9 hits at 1, 9 at 2, on 1975 lines from 0.78125 to 1543 Hz`, of those FRFs that are used.
     pub fn says(&self, frfs: &FrfSet, estimator: Estimator) -> String {
-        let count = |count: usize| format!("{count} hit{}", if count == 1 { "" } else { "s" });
         let excitations = self.estimate.excitations.iter();
         let points: Vec<String> =
-            excitations.map(|e| format!("{} at {}", count(e.hits.len()), e.struck)).collect();
+            excitations.map(|e| format!("{} at {}", counted(e.hits.len(), "hit"), e.struck)).collect();
         let hz = frfs.lines().hz();
         let (first, last) = (hz.first().copied().unwrap_or(0.0), hz.last().copied().unwrap_or(0.0));
         format!(

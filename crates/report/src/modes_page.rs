@@ -8,7 +8,7 @@ mod table;
 use jointscope_fixture::Fixture;
 use jointscope_modes::ModalAnalysis;
 use jointscope_spectra::FrfSet;
-use jointscope_wording::Remarks;
+use jointscope_wording::{Remarks, counted};
 
 use crate::context::PageContext;
 use crate::report::Report;
@@ -26,13 +26,12 @@ pub fn modes_report(
     (matches, modelled): (&[String], Option<&FrfSet>),
     context: &PageContext,
 ) -> Report {
-    let count = analysis.modes.len();
     let hz = analysis.lines().hz();
     // To a tenth of a millihertz: lines carry rounding of their own.
     let rounded = |hz: f64| (1e4 * hz).round() / 1e4;
     let headline = format!(
-        "{count} mode{} from {} to {} Hz",
-        if count == 1 { "" } else { "s" },
+        "{} from {} to {} Hz",
+        counted(analysis.modes.len(), "mode"),
         rounded(hz[0]),
         rounded(hz[hz.len() - 1])
     );

@@ -1,6 +1,7 @@
 //! The model's modes, beside the recording's.
 
 use jointscope_check::{ModelModes, RecordingCheck};
+use jointscope_wording::counted;
 
 use crate::format::{fixed, in_column, significant, with_sign};
 use crate::mode_indicator;
@@ -14,9 +15,8 @@ pub(super) fn modes(modes: &ModelModes, recording: Option<&RecordingCheck>) -> S
         .numbers("Damping ratio", "%", |mode| significant(100.0 * mode.damping_ratio, 3))
         .words("", |mode| if mode.on_supports { "as rigid on its supports" } else { "" })
         .footnote(format!(
-            "{} rigid-body mode{} at 0 Hz; modes up to {} Hz. The deviations are those that the fixture's own tolerances leave.",
-            modes.rigid,
-            if modes.rigid == 1 { "" } else { "s" },
+            "{} at 0 Hz; modes up to {} Hz. The deviations are those that the fixture's own tolerances leave.",
+            counted(modes.rigid, "rigid-body mode"),
             significant(modes.to, 4)
         ));
     let section = Section::new("Modes of the model").with(table);

@@ -1,6 +1,7 @@
 //! The modes in numbers.
 
 use jointscope_modes::ModalAnalysis;
+use jointscope_wording::counted;
 
 use crate::format::{QuantityText, fixed, quantity, significant};
 use crate::section::Section;
@@ -62,9 +63,9 @@ pub(super) fn residuals(analysis: &ModalAnalysis) -> Section {
     let (lower, upper) =
         analysis.residual_terms.first().map_or((0, 0), |terms| (terms.lower.len(), terms.upper.len()));
     Section::new("Residual terms").with(table.footnote(format!(
-        "Receptance beyond the modes: lower/s² + upper, real parts. In use are {lower} term{} in 1/s², 1/s⁴, … and {upper} in 1, s², …, as many as χ² pays for; χ² per degree of \
+        "Receptance beyond the modes: lower/s² + upper, real parts. In use are {} in 1/s², 1/s⁴, … and {upper} in 1, s², …, as many as χ² pays for; χ² per degree of \
          freedom is {}. Relative error: √(Σ|rebuilt − measured|²/Σ|measured|²), as accelerance.",
-        if lower == 1 { "" } else { "s" },
+        counted(lower, "term"),
         significant(analysis.chi2_per_dof, 4)
     )))
 }
