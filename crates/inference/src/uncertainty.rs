@@ -1,4 +1,5 @@
-//! What a fit leaves uncertain: the covariance by its curvature, and by the fits without each block of the data.
+//! What a fit leaves uncertain: the covariance by its curvature, by the fits without each block of the data,
+//! and how much larger it is where residuals are correlated.
 
 use num_complex::Complex64;
 

@@ -1,4 +1,4 @@
-//! Singular values, checked: the sum of their squares must be the matrix's norm.
+//! Singular values, checked: the sum of their squares must be that of the elements.
 
 use faer::Mat;
 use num_complex::Complex64;

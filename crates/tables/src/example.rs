@@ -1,4 +1,4 @@
-//! The paper's examples as fixtures: the paper prints no dimensions, so they were inferred from its cells.
+//! The paper's examples as fixtures whose dimensions were inferred from the cells that it prints.
 
 use crate::TablesError;
 use jointscope_averaging::Band;
