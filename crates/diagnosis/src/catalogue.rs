@@ -132,8 +132,18 @@ impl Catalogue<'_> {
         let points =
             pairs.iter().flat_map(|pair| [pair.response.point.clone(), pair.reference.point.clone()]);
         for point in sorted(points) {
-            kinds(|spec| spec.entry == Entry::Offset)
-                .for_each(|kind| self.add(kind, Place::Point(point.clone()), None));
+            // Where a point is both struck and read, its sensor or its impacts may be off by themselves: no hammer strikes a sensor.
+            let at = |channel: &jointscope_spectra::Channel| {
+                channel.point == point && channel.dof == Dof::Translation
+            };
+            let is_driven =
+                pairs.iter().any(|pair| at(&pair.response)) && pairs.iter().any(|pair| at(&pair.reference));
+            let own = [Place::Response(point.clone()), Place::Reference(point.clone())];
+            let own = own.into_iter().filter(|_| is_driven);
+            for place in std::iter::once(Place::Point(point.clone())).chain(own) {
+                kinds(|spec| spec.entry == Entry::Offset)
+                    .for_each(|kind| self.add(kind, place.clone(), None));
+            }
         }
         for response in responses {
             let place = || Place::Response(response.clone());

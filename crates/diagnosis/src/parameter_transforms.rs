@@ -130,10 +130,12 @@ fn possible(possible: Possible, fixture: &Fixture, place: &Place) -> (f64, f64) 
             let own = own.map_or(0.0, |body| most_missing(fixture, body));
             (-own, ADDED_MASSES * masses().sum::<f64>())
         }
-        (Possible::OnBody, Place::Point(name)) => fixture.point(name).map_or(any, |point| {
-            let (low, high) = reach(fixture, point.body);
-            (low - point.x.value, high - point.x.value)
-        }),
+        (Possible::OnBody, Place::Point(name) | Place::Response(name) | Place::Reference(name)) => {
+            fixture.point(name).map_or(any, |point| {
+                let (low, high) = reach(fixture, point.body);
+                (low - point.x.value, high - point.x.value)
+            })
+        }
         (Possible::LengthOfJoint, Place::Joint(name)) => {
             let joint = fixture.joints().iter().find(|joint| joint.name == *name);
             joint.map_or(any, |joint| (-MISSING_LENGTH * fixture.joint_length(joint), f64::INFINITY))

@@ -2,7 +2,7 @@
 
 use crate::effects::{Action, SignalFilter, actions};
 use crate::{LumpedError, Station};
-use jointscope_fixture::{Fixture, Place};
+use jointscope_fixture::{Fixture, Place, Side};
 use jointscope_spectra::{Channel, Dof, FrfPair};
 use num_complex::Complex64;
 
@@ -100,9 +100,9 @@ pub fn window_decay(fixture: &Fixture) -> f64 {
     decay(actions(fixture))
 }
 
-/// Where a channel sits, offsets included; `None` where its point does not exist.
-pub fn channel_station(fixture: &Fixture, channel: &Channel) -> Option<Station> {
-    station(fixture, actions(fixture), channel)
+/// Where a channel sits, offsets of its point included; `None` where its point does not exist.
+pub fn channel_station(fixture: &Fixture, channel: &Channel, side: Side) -> Option<Station> {
+    station(fixture, actions(fixture), channel, side)
 }
 
 fn decay<'a>(effects: impl IntoIterator<Item = Action<'a>>) -> f64 {
@@ -114,10 +114,11 @@ fn station<'a>(
     fixture: &Fixture,
     effects: impl IntoIterator<Item = Action<'a>>,
     channel: &Channel,
+    side: Side,
 ) -> Option<Station> {
     let point = fixture.point(&channel.point)?;
     let offset = |action| match action {
-        Action::Offset { point, dx } if point == channel.point => dx,
+        Action::Offset { place, dx } if place.holds_channel(&channel.point, side) => dx,
         _ => 0.0,
     };
     let x = point.x.value + effects.into_iter().map(offset).sum::<f64>();
@@ -125,7 +126,7 @@ fn station<'a>(
 }
 
 fn reading(fixture: &Fixture, effects: &[Action], pair: &FrfPair) -> Result<Reading, LumpedError> {
-    let at = |channel: &Channel| placed(fixture, effects, pair, channel);
+    let at = |channel: &Channel, side: Side| placed(fixture, effects, pair, (channel, side));
     let (mut gain, mut delay, mut load) = (1.0, 0.0, 0.0);
     let mut filters = Vec::new();
     for effect in effects {
@@ -152,9 +153,11 @@ fn reading(fixture: &Fixture, effects: &[Action], pair: &FrfPair) -> Result<Read
     }
     let load = match load {
         0.0 => None,
-        mass => Some((at(&Channel::transverse(pair.response.point.clone()))?, mass)),
+        mass => Some((at(&Channel::transverse(pair.response.point.clone()), Side::Response)?, mass)),
     };
-    Ok(Reading { output: at(&pair.response)?, input: at(&pair.reference)?, load, gain, delay, filters })
+    let output = at(&pair.response, Side::Response)?;
+    let input = at(&pair.reference, Side::Reference)?;
+    Ok(Reading { output, input, load, gain, delay, filters })
 }
 
 /// The power with which what a channel does to its signal enters an FRF: 1 of its own response, of what all responses have in common and of its own record, which multiply it, −1 of its
@@ -174,14 +177,15 @@ fn placed(
     fixture: &Fixture,
     effects: &[Action],
     pair: &FrfPair,
-    channel: &Channel,
+    (channel, side): (&Channel, Side),
 ) -> Result<Station, LumpedError> {
-    let station =
-        station(fixture, effects.iter().copied(), channel).ok_or_else(|| LumpedError::UnknownPoint {
+    let station = station(fixture, effects.iter().copied(), channel, side).ok_or_else(|| {
+        LumpedError::UnknownPoint {
             frf: pair.to_string(),
             point: channel.point.clone(),
             known: fixture.points().iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", "),
-        })?;
+        }
+    })?;
     if channel.dof == Dof::Rotation && !fixture.bodies()[station.body].kind.rotates() {
         return Err(LumpedError::NoRotation { frf: pair.to_string(), point: channel.point.clone() });
     }

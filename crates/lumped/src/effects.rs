@@ -18,8 +18,8 @@ pub(crate) enum Action<'a> {
     OnBeam { body: usize, change: Change },
     /// A joint changes.
     OnJoint { joint: usize, change: Change },
-    /// Channels at the point sit `dx` further along x.
-    Offset { point: &'a str, dx: f64 },
+    /// Channels at the place sit `dx` further along x.
+    Offset { place: &'a Place, dx: f64 },
     /// A channel's signal is multiplied by `gain` and late by `delay`, s.
     Signal { channel: &'a Place, gain: f64, delay: f64 },
     /// A channel's signal passes a filter.
@@ -142,10 +142,7 @@ pub(crate) fn action<'a>(fixture: &'a Fixture, effect: &'a Effect) -> Option<Act
         Kind::LossFactor => changed(Change::Loss(value(0))),
         Kind::Relaxation => changed(Change::Relaxation { ratio: value(0), time: value(1) }),
         Kind::JointLength => changed(Change::Length(value(0))),
-        Kind::PointOffset => match &effect.place {
-            Place::Point(point) => Some(Action::Offset { point, dx: value(0) }),
-            _ => None,
-        },
+        Kind::PointOffset => Some(Action::Offset { place: &effect.place, dx: value(0) }),
         Kind::ChannelGain => Some(Action::Signal { channel: &effect.place, gain: value(0), delay: 0.0 }),
         Kind::ChannelDelay => Some(Action::Signal { channel: &effect.place, gain: 1.0, delay: value(0) }),
         Kind::SensorMass => match &effect.place {

@@ -3,7 +3,7 @@
 use crate::effects::all;
 use crate::physical::window_decay;
 use crate::{Row, Structure, StructureError};
-use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
+use jointscope_fixture::{Effect, EffectKind, Fixture, Place, Side};
 use jointscope_linalg::LuWorkspace;
 use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
@@ -124,8 +124,8 @@ impl Circuit {
         forces: &mut Forces,
     ) -> Result<Self, StructureError> {
         let displaced = all(effects, EffectKind::PointOffset).next().is_some();
-        let place = |channel: &Channel| {
-            if displaced { structure.motion_as_mounted(channel) } else { structure.motion(channel) }
+        let place = |channel: &Channel, side: Side| {
+            if displaced { structure.motion_as_mounted(channel, side) } else { structure.motion(channel) }
         };
         let on = |kind: EffectKind| {
             let (response, reference) = (pair.response.to_string(), pair.reference.to_string());
@@ -155,12 +155,12 @@ impl Circuit {
         let sensor = if mass == 0.0 {
             None
         } else {
-            let place = place(&Channel::transverse(&pair.response.point))?.clone();
+            let place = place(&Channel::transverse(&pair.response.point), Side::Response)?.clone();
             Some(Sensor { mass, force: forces.index_of(&place), place })
         };
         Ok(Circuit {
-            response: place(&pair.response)?.clone(),
-            reference: forces.index_of(place(&pair.reference)?),
+            response: place(&pair.response, Side::Response)?.clone(),
+            reference: forces.index_of(place(&pair.reference, Side::Reference)?),
             gain: on(EffectKind::ChannelGain).map(|(factor, side): (f64, i32)| factor.powi(side)).product(),
             delay: on(EffectKind::ChannelDelay).map(|(seconds, side)| seconds * f64::from(side)).sum(),
             corners: on(EffectKind::ChannelHighpass).map(|(corner, side)| (TAU * corner, side)).collect(),

@@ -91,6 +91,9 @@ fn place(kind: PlaceKind) -> Value {
     match kind {
         PlaceKind::Body => text("The name of a body."),
         PlaceKind::Point => text("The name of a point."),
+        PlaceKind::PointOrChannel => text(
+            "The name of a point, `3`: sensor and impacts alike; `response 3` for its sensor, `reference 3` for its impacts alone.",
+        ),
         PlaceKind::Joint => text("The name of a joint."),
         PlaceKind::JointOrBeamBody => text("The name of a joint, or of a body that is a beam."),
         PlaceKind::Beam => text("The name of a joint that is a beam, or of a body that is one."),

@@ -49,6 +49,8 @@ impl Sized<'_> {
             Case::Within(low, high) => low < leading && leading < high,
             Case::Rotation => self.effect.dof == Some(Dof::Rotation),
             Case::Record => matches!(self.effect.place, Place::Record(_)),
+            Case::Response => matches!(self.effect.place, Place::Response(_)),
+            Case::Reference => matches!(self.effect.place, Place::Reference(_)),
             Case::OnlySure(parameter) => {
                 let mut may_be_zero =
                     spec.parameters.iter().filter(|p| p.range == ParameterRange::NonNegative);
@@ -111,6 +113,8 @@ fn word(effect: &Effect, key: &str) -> String {
         "place" if *place == Place::Force => "the force of all references".to_owned(),
         "place" if *place == Place::Responses => "all responses".to_owned(),
         "place" => place.to_string(),
+        "where it sits" if matches!(place, Place::Point(_)) => format!("point {place}"),
+        "where it sits" => place.to_string(),
         "against rotation" if effect.dof == Some(Dof::Rotation) => " against rotation".to_owned(),
         "owner" => format!("{owner} {place}"),
         "Owner" => format!("{at_the_start} {place}"),

@@ -192,7 +192,7 @@ mod tests {
         let body = || Place::Body("B".into());
         let joint = || Place::Joint("J".into());
         type Case<'a> = (EffectKind, Place, Option<Dof>, &'a [f64], &'a [&'a str]);
-        let cases: [Case; 22] = [
+        let cases: [Case; 24] = [
             (
                 EffectKind::AddedMass,
                 body(),
@@ -243,6 +243,14 @@ mod tests {
             (EffectKind::LossFactor, joint(), None, &[0.02], &["0.0200"]),
             (EffectKind::Relaxation, joint(), None, &[0.3, 1e-3], &["viscoelastic", "159", "1.000 ms"]),
             (EffectKind::PointOffset, Place::Point("4".into()), None, &[-0.002], &["point 4", "−2.000 mm"]),
+            (EffectKind::PointOffset, Place::Response("4".into()), None, &[0.002], &["sensor of response 4"]),
+            (
+                EffectKind::PointOffset,
+                Place::Reference("4".into()),
+                None,
+                &[0.002],
+                &["impacts of reference 4"],
+            ),
             (EffectKind::JointLength, joint(), None, &[0.001], &["longer", "1.000 mm"]),
             (
                 EffectKind::ChannelGain,

@@ -1,7 +1,7 @@
 //! What one unknown scalar at a site does to every FRF on a line.
 
 use super::Site;
-use jointscope_fixture::{Dof, Entry, Fixture, Place};
+use jointscope_fixture::{Dof, Entry, Fixture, Place, Side};
 use jointscope_lumped::{
     Instrument, JointElement, MeasuringChain, Model, Receptances, Station, channel_station, nominal_stiffness,
 };
@@ -366,7 +366,7 @@ fn action(fixture: &Fixture, site: &Site, pairs: &[FrfPair]) -> Option<(Vec<Stat
             rows.contains(&true).then(|| (Vec::new(), Action::Channel { rows, divides: true, driving: None }))
         }
         Site::Position(name) => {
-            let slope = channel_station(fixture, &Channel::rotational(name.clone()))?;
+            let slope = channel_station(fixture, &Channel::rotational(name.clone()), Side::Response)?;
             // A rotation reads the same all along a rigid block.
             let reads = |channel: &Channel| channel.point == *name && channel.dof == Dof::Translation;
             let responses: Vec<bool> = pairs.iter().map(|p| reads(&p.response)).collect();

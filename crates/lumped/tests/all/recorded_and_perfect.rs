@@ -63,6 +63,22 @@ fn an_offset_sensor_reads_what_a_sensor_there_would() {
 }
 
 #[test]
+fn where_a_point_is_struck_and_read_its_sensor_and_its_impacts_may_each_be_off_alone() {
+    let two = format!(r#"{AS_STATED}, "beside": {{ "body": "B", "x": 0.129 }}"#);
+    let read = |physics: &str, pair: (&str, &str)| {
+        let pairs = [FrfPair::transverse(pair.0, pair.1)];
+        let lines = SpectralLines::even(10.0, 7.5, 130).unwrap();
+        synthesize(&fixture(&two, "", physics), &pairs, &lines, Instrument::AsRecorded).unwrap()
+    };
+    for (place, there) in [("response 4", ("beside", "4")), ("reference 4", ("4", "beside"))] {
+        let physics = format!(r#"{{"kind": "point_offset", "place": "{place}", "dx": 0.004}}"#);
+        assert_equal(read(&physics, ("4", "4")).values(0), read("", there).values(0));
+        let other = if place.starts_with("response") { ("1", "4") } else { ("4", "1") };
+        assert_equal(read(&physics, other).values(0), read("", other).values(0));
+    }
+}
+
+#[test]
 fn a_sensors_mass_loads_its_own_row_and_no_other() {
     let loaded = frfs(
         &fixture(AS_STATED, "", r#"{"kind": "sensor_mass", "place": "response 4", "mass": 0.02}"#),

@@ -4,7 +4,7 @@ use super::sides::free;
 use crate::settings::map::DETERMINED;
 use crate::spectra::Windowed;
 use crate::time::structure::{abscissa_m, effects};
-use jointscope_fixture::{BodyKind, Dof, EffectKind, Fixture, Place, Quantity};
+use jointscope_fixture::{BodyKind, Dof, EffectKind, Fixture, Place, Quantity, Side};
 use jointscope_hits::{Hit, Motion, Response};
 use jointscope_linalg::Cholesky;
 use num_complex::Complex64;
@@ -120,7 +120,8 @@ fn readings(
         match response.channel.dof {
             Dof::Translation => {
                 coefficients[2 * point.body] = 1.0;
-                coefficients[2 * point.body + 1] = (abscissa_m(fixture, point) - body.x_cg) / scale;
+                coefficients[2 * point.body + 1] =
+                    (abscissa_m(fixture, point, Side::Response) - body.x_cg) / scale;
             }
             Dof::Rotation => {
                 coefficients[2 * point.body + 1] = 1.0;
@@ -158,7 +159,8 @@ fn momentum(fixture: &Fixture, hit: &Hit, lines: &Windowed, bodies: &[Inertia], 
 
 /// Force and moment about `x` that one unit of the hammer's signal applies.
 pub(super) fn applied(fixture: &Fixture, hit: &Hit, x: f64) -> [f64; 2] {
-    let at = fixture.point(&hit.struck().point).map_or(0.0, |point| abscissa_m(fixture, point));
+    let at =
+        fixture.point(&hit.struck().point).map_or(0.0, |point| abscissa_m(fixture, point, Side::Reference));
     match hit.struck().dof {
         Dof::Translation => [1.0, at - x],
         Dof::Rotation => [0.0, 1.0],

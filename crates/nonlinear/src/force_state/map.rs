@@ -5,7 +5,7 @@ use super::sides::{check_effects, free, sides};
 use crate::settings::map::{DIED_DOWN, FALLS_FROM, ONSET, RISES_FROM};
 use crate::spectra::{Windowed, rising};
 use crate::time::simulation::simulate_one;
-use crate::time::structure::{Reading, abscissa_m, effects};
+use crate::time::structure::{Reading, effects};
 use crate::{ForceStateError, RestoringLaw};
 use jointscope_fixture::{Dof, EffectKind, Fixture, Joint, Place};
 use jointscope_hits::{Hit, Motion, Response};
@@ -127,7 +127,7 @@ impl ForceStateMap {
             else {
                 return accelerations[end].clone();
             };
-            let arm = abscissa_m(fixture, point) - body.x_cg;
+            let arm = point.x.value - body.x_cg;
             [a.iter().zip(turn).map(|(a, turn)| a + turn * arm).collect(), turn.clone()]
         });
         let rates: BodyMotion = across(&to, &from, fixture.joint_length(joint));

@@ -7,7 +7,7 @@ use crate::settings::hits::{
 };
 use crate::spectra::noise;
 use crate::time::structure::{Reading, station};
-use jointscope_fixture::Fixture;
+use jointscope_fixture::{Fixture, Side};
 use jointscope_hits::Hit;
 use jointscope_spectra::Channel;
 use std::collections::BTreeSet;
@@ -95,9 +95,10 @@ fn check(fixture: &Fixture, hit: &Hit) -> Result<(), DiagnoseError> {
         let (samples, needed) = (hit.samples(), FEWEST_SAMPLES);
         return Err(DiagnoseError::TooShort { hit: number, samples, needed });
     }
-    let mut channels = hit.responses().iter().map(|r| &r.channel).chain([hit.struck()]);
+    let responses = hit.responses().iter().map(|r| (&r.channel, Side::Response));
+    let mut channels = responses.chain([(hit.struck(), Side::Reference)]);
     channels
-        .try_for_each(|c| station(fixture, c).map(drop))
+        .try_for_each(|(channel, side)| station(fixture, channel, side).map(drop))
         .map_err(|error| DiagnoseError::Channel(number, error))
 }
 

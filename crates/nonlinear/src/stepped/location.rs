@@ -4,7 +4,7 @@ use super::level::SteppedLevel;
 use crate::SteppedError;
 use crate::settings::level_model::{BESIDE, STATIC, UNMOVED_JOINT};
 use crate::time::structure::station;
-use jointscope_fixture::{Fixture, Joint};
+use jointscope_fixture::{Fixture, Joint, Side};
 use jointscope_lumped::{LumpedError, Model, Station};
 use jointscope_spectra::Dof;
 use num_complex::Complex64;
@@ -115,8 +115,8 @@ fn location(
         let pairs = level.frfs.pairs();
         let (mut outputs, mut inputs) = (ends.clone(), ends.clone());
         for pair in pairs {
-            outputs.push(station(fixture, &pair.response)?);
-            inputs.push(station(fixture, &pair.reference)?);
+            outputs.push(station(fixture, &pair.response, Side::Response)?);
+            inputs.push(station(fixture, &pair.reference, Side::Reference)?);
         }
         let columns = inputs.len();
         let mut receptances = model.receptances(&outputs, &inputs);

@@ -4,7 +4,7 @@ use super::kernel::{Element, MOST_ELEMENTS, MOST_STATES, Output, System};
 use super::law::RestoringLaw;
 use crate::settings::simulation::UNFELT_MODE;
 use crate::{ChannelError, SimulationError};
-use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place, Point};
+use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place, Point, Side};
 use jointscope_hits::Motion;
 use jointscope_lumped::{StateSpace, Station};
 use jointscope_spectra::Channel;
@@ -45,7 +45,7 @@ impl<'a> Structure<'a> {
 
     /// The load over all states of a force of 1 at `struck`.
     pub(crate) fn load(&self, struck: &Channel) -> Result<Vec<f64>, SimulationError> {
-        Ok(self.space.load(&station(self.fixture, struck)?))
+        Ok(self.space.load(&station(self.fixture, struck, Side::Reference)?))
     }
 
     /// The system under a load, read by `readings` and by rows over all states of the assembly. Rigid motions that nothing holds and no
@@ -58,7 +58,7 @@ impl<'a> Structure<'a> {
     ) -> Result<System, SimulationError> {
         let mut outputs = Vec::with_capacity(readings.len() + rows.len());
         for (channel, motion) in readings {
-            let station = station(self.fixture, channel)?;
+            let station = station(self.fixture, channel, Side::Response)?;
             outputs.push(match motion {
                 Motion::Displacement => self.plain(self.space.displacement(&station)),
                 Motion::Velocity => self.plain(self.space.velocity(&station)),
@@ -121,7 +121,7 @@ impl<'a> Structure<'a> {
 }
 
 /// The body, abscissa and direction of a channel.
-pub(crate) fn station(fixture: &Fixture, channel: &Channel) -> Result<Station, ChannelError> {
+pub(crate) fn station(fixture: &Fixture, channel: &Channel, side: Side) -> Result<Station, ChannelError> {
     let known = || fixture.points().iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
     let point = fixture
         .point(&channel.point)
@@ -129,13 +129,15 @@ pub(crate) fn station(fixture: &Fixture, channel: &Channel) -> Result<Station, C
     if channel.dof == Dof::Rotation && !fixture.bodies()[point.body].kind.rotates() {
         return Err(ChannelError::NoRotation(channel.point.clone()));
     }
-    Ok(Station { body: point.body, x: abscissa_m(fixture, point), dof: channel.dof })
+    Ok(Station { body: point.body, x: abscissa_m(fixture, point, side), dof: channel.dof })
 }
 
 /// Where a point really lies: as stated, moved by what the fixture says of it.
-pub(crate) fn abscissa_m(fixture: &Fixture, point: &Point) -> f64 {
-    let offsets = effects(fixture, EffectKind::PointOffset, Place::Point(point.name.clone()));
-    point.x.value + offsets.map(|e| e.value(0)).sum::<f64>()
+pub(crate) fn abscissa_m(fixture: &Fixture, point: &Point, side: Side) -> f64 {
+    let is_here = |effect: &&Effect| {
+        effect.kind == EffectKind::PointOffset && effect.place.holds_channel(&point.name, side)
+    };
+    point.x.value + fixture.effects().filter(is_here).map(|e| e.value(0)).sum::<f64>()
 }
 
 /// The effects of one kind at one place.

@@ -7,8 +7,8 @@ use super::joint::assemble_joint;
 use super::mesh::meshes;
 use super::{Assembly, Law, Row, Station};
 use crate::StructureError;
-use crate::effects::{all, at, sum};
-use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
+use crate::effects::{all, sum};
+use jointscope_fixture::{Effect, EffectKind, Fixture, Place, Side};
 use jointscope_linalg::generalized_symmetric_eigen;
 use jointscope_spectra::{Channel, Dof};
 use std::collections::BTreeMap;
@@ -19,13 +19,13 @@ use std::f64::consts::TAU;
 pub struct Structure {
     assembly: Assembly,
     points: BTreeMap<String, Station>,
-    displaced: BTreeMap<String, Station>,
+    displaced: [BTreeMap<String, Station>; 2],
 }
 
 impl Structure {
     /// A structure assembled by hand, with its measuring points by name.
     pub fn new(assembly: Assembly, points: impl IntoIterator<Item = (String, Station)>) -> Self {
-        Structure { assembly, points: points.into_iter().collect(), displaced: BTreeMap::new() }
+        Structure { assembly, points: points.into_iter().collect(), displaced: Default::default() }
     }
 
     /// The structure that a fixture describes, every structural effect of its `physics` in place.
@@ -62,9 +62,13 @@ impl Structure {
         for point in fixture.points() {
             let x = point.x.value;
             structure.points.insert(point.name.clone(), bodies.station(point.body, x)?);
-            let dx = sum(at(effects, EffectKind::PointOffset, Place::Point(point.name.clone())));
-            if dx != 0.0 {
-                structure.displaced.insert(point.name.clone(), bodies.station(point.body, x + dx)?);
+            for (places, side) in structure.displaced.iter_mut().zip([Side::Response, Side::Reference]) {
+                let moved = all(effects, EffectKind::PointOffset);
+                let moved = moved.filter(|effect| effect.place.holds_channel(&point.name, side));
+                let dx: f64 = moved.map(|effect| effect.value(0)).sum();
+                if dx != 0.0 {
+                    places.insert(point.name.clone(), bodies.station(point.body, x + dx)?);
+                }
             }
         }
         Ok((structure, bodies))
@@ -80,7 +84,7 @@ impl Structure {
             });
             moved.collect()
         };
-        Structure { assembly, points: on(&self.points), displaced: on(&self.displaced) }
+        Structure { assembly, points: on(&self.points), displaced: self.displaced.each_ref().map(on) }
     }
 
     /// Masses, springs and dashpots on the coordinates.
@@ -100,8 +104,8 @@ impl Structure {
     ///
     /// # Errors
     /// [`StructureError::UnknownPoint`].
-    pub(crate) fn motion_as_mounted(&self, channel: &Channel) -> Result<&Row, StructureError> {
-        match motion(&self.displaced, channel) {
+    pub(crate) fn motion_as_mounted(&self, channel: &Channel, side: Side) -> Result<&Row, StructureError> {
+        match motion(&self.displaced[side as usize], channel) {
             Some(row) => Ok(row),
             None => self.motion(channel),
         }

@@ -302,6 +302,24 @@ fn a_displaced_point_reads_where_it_is_and_leaves_the_joint_alone() {
 }
 
 #[test]
+fn an_offset_of_a_response_leaves_the_impacts_at_its_point_alone() {
+    let at = |place: &str| {
+        let physics = format!(r#"{{"kind": "point_offset", "place": "{place}", "dx": 0.06}}"#);
+        two_blocks(0.065, 0.125, 0.095, &physics)
+    };
+    let bare = two_blocks(0.065, 0.125, 0.095, "");
+    let read = |fixture: &Fixture, pair| {
+        frfs(fixture, &transverse(&[pair]), &lines(), Instrument::AsDescribed).unwrap()
+    };
+    for (place, there) in [("response 3", ("4", "3")), ("reference 3", ("3", "4"))] {
+        let (a, b) = (read(&at(place), ("3", "3")), read(&bare, there));
+        for (a, b) in a.values(0).iter().zip(b.values(0)) {
+            assert!((a - b).norm() < 1e-12 * b.norm(), "{place}");
+        }
+    }
+}
+
+#[test]
 fn rotations_and_moments_are_reciprocal_to_displacements_and_forces() {
     let pairs = [
         FrfPair::new(Channel::rotational("4"), Channel::transverse("1")),
