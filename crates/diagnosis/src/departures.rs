@@ -48,7 +48,7 @@ pub(crate) fn departed(hypothesis: &Hypothesis, index: usize) -> bool {
 /// Quantities that the refitted or the repaired model took farther from what is stated than chance does, the farthest first.
 pub(crate) fn departures([refitted, repaired]: &[Hypothesis; 2]) -> Vec<Departure> {
     let of = |(index, tolerance): (usize, &Tolerance)| {
-        let deviations = repaired.deviations(index);
+        let deviations = repaired.restated(index).unwrap_or_else(|| repaired.departure(index));
         let largest = refitted.departure(index).abs().max(deviations.abs());
         let std = tolerance.quantity.std.filter(|_| largest > DEPARTED)?;
         Some(Departure {
@@ -56,7 +56,7 @@ pub(crate) fn departures([refitted, repaired]: &[Hypothesis; 2]) -> Vec<Departur
             stated: tolerance.quantity.value,
             std,
             refitted: refitted.ended_at(index),
-            repaired: tolerance.value(deviations),
+            repaired: repaired.ended_at(index),
             deviations,
         })
     };

@@ -86,7 +86,11 @@ impl Hypothesis {
 
     /// The list of parameters follows from tolerances and effects.
     fn listed(mut self) -> Self {
-        let tolerances = self.tolerances.iter().map(|tolerance| tolerance.parameter);
+        let is_in_ratios = self.effects.iter().any(|(effect, _)| effect.kind.spec().within_modal_ratios);
+        let tolerances = self.tolerances.iter().map(|tolerance| match is_in_ratios {
+            true => down_to_none(tolerance),
+            false => tolerance.parameter,
+        });
         let free = self.effects.iter().flat_map(|(_, all)| all).copied().filter(Parameter::is_free);
         self.parameters = tolerances.chain(free).collect();
         self
@@ -172,9 +176,10 @@ impl Hypothesis {
     }
 
     /// Where tolerance `index` stands, in standard deviations (or tenths of its value where it is free): for masses and stiffnesses those of
-    /// the logarithm.
+    /// the logarithm. A modal ratio's deviation is the one that it has beside these effects.
     pub fn departure(&self, index: usize) -> f64 {
-        self.coordinates[index]
+        let precision = self.prior(index);
+        self.coordinates[index] * if precision > 0.0 { precision.sqrt() } else { 1.0 }
     }
 
     /// How each coordinate moves: tolerances first, then the effects' free parameters.
@@ -356,6 +361,17 @@ impl Hypothesis {
             *coordinate = parameter.clamp(*coordinate + step);
         }
         next
+    }
+}
+
+/// How a quantity moves beside an effect that modal ratios hold: of a stated ratio the viscous part may be anything down to none.
+fn down_to_none(tolerance: &Tolerance) -> Parameter {
+    let parameter = tolerance.parameter;
+    match (tolerance.quantity.key, parameter.transform) {
+        (QuantityKey::ModalRatio(_), Transform::Linear { centre, scale }) if parameter.precision > 0.0 => {
+            parameter.with_precision((1.0 + (centre / scale).powi(2)).recip())
+        }
+        _ => parameter,
     }
 }
 

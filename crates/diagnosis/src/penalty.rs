@@ -14,5 +14,14 @@ pub(crate) fn penalty(settings: &SelectionSettings, parameters: f64, candidates:
 /// that is searched over a range (a frequency, a time) has as many chances as the range has resolvable values, and what is rare has the odds against it.
 pub(crate) fn parameter_penalty(settings: &SelectionSettings, hypothesis: &Hypothesis) -> f64 {
     let ranges: f64 = hypothesis.effects().iter().map(|effect| effect.kind.spec().range_penalty).sum();
-    settings.parameter_penalty * hypothesis.effect_parameters() as f64 + ranges + 2.0 * rarity(hypothesis)
+    // A modal ratio that may be anything down to none is less probable where it stays as stated.
+    let widened: f64 = (0..hypothesis.tolerances().len())
+        .map(|index| hypothesis.prior(index))
+        .filter(|precision| *precision > 0.0)
+        .map(|precision| -precision.ln())
+        .sum();
+    settings.parameter_penalty * hypothesis.effect_parameters() as f64
+        + ranges
+        + widened
+        + 2.0 * rarity(hypothesis)
 }

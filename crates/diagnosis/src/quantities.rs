@@ -6,7 +6,7 @@ use jointscope_fixture::{Effect, Place};
 impl Hypothesis {
     /// How far quantity `index` ended from what is stated, in standard deviations, an effect that calls it wrong included.
     pub fn deviations(&self, index: usize) -> f64 {
-        self.restated(index).unwrap_or_else(|| self.departure(index))
+        self.restated(index).unwrap_or(self.coordinates[index])
     }
 
     /// Whether quantity `index` had to move farther from what is stated than chance takes one of a few.
@@ -16,7 +16,7 @@ impl Hypothesis {
     }
 
     /// Where an effect that calls quantity `index` wrong takes it, in standard deviations from what is stated.
-    fn restated(&self, index: usize) -> Option<f64> {
+    pub(crate) fn restated(&self, index: usize) -> Option<f64> {
         let path = &self.tolerances().get(index)?.quantity.path;
         let is_of_it = |effect: &Effect| matches!(&effect.place, Place::Quantity(other, _) if other == path);
         let effect = self.effects().iter().position(is_of_it)?;

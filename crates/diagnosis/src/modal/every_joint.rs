@@ -45,7 +45,9 @@ impl Searcher<'_> {
     pub(super) fn at_every_joint(&self, base: &Named) -> Vec<Named> {
         let mut groups = self.of_every_joint();
         groups.iter_mut().for_each(|names| names.retain(|c| !base.names.contains(c)));
-        groups.retain(|names| names.len() > 1);
+        // Ratios that are free as well would follow their own errors beside another effect: how all joints dissipate is asked where it may be all that is left out.
+        let frees_ratios = |names: &[usize]| self.candidates[names[0]].kind.spec().within_modal_ratios;
+        groups.retain(|names| names.len() > 1 && (base.names.is_empty() || !frees_ratios(names)));
         if groups.is_empty() || !self.problem.work.allows("what every joint may lack, by modes") {
             return Vec::new();
         }

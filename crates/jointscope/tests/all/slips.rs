@@ -55,6 +55,28 @@ fn a_hammer_that_reads_high_is_no_mass_that_is_missing() {
 }
 
 #[test]
+fn a_hammer_that_strikes_beside_the_sensor_and_a_sensor_beside_the_impacts_are_off_by_themselves() {
+    let driven = || "1".to_owned();
+    named(&on(EffectKind::PointOffset, Place::Reference(driven()), &[0.003]), &eight_pairs(), 41, 0.1);
+    named(&on(EffectKind::PointOffset, Place::Response(driven()), &[-0.002]), &eight_pairs(), 42, 0.1);
+    named(&on(EffectKind::PointOffset, Place::Point(driven()), &[0.003]), &eight_pairs(), 43, 0.1);
+}
+
+#[test]
+fn structural_damping_that_the_stated_ratios_were_measured_with_is_no_delay_of_a_channel() {
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let lossy = on(EffectKind::LossFactor, Place::Joint("J".into()), &[0.01]);
+    let frfs = measured(&believed([1e-6, 1e-6]), vec![lossy], (&four_pairs(), &lines), &hammer(44));
+    // A modal test of that structure reads half the loss factor in both modes.
+    let stated = believed([0.0045, 0.0052]);
+    let diagnosis = Diagnosis::of(&stated, &frfs, &DiagnosisOptions::default()).unwrap();
+    let [found] = &diagnosis.findings[..] else { panic!("{}", told(&diagnosis)) };
+    assert!(found.effect.kind == EffectKind::LossFactor, "{}", told(&diagnosis));
+    assert!((found.effect.value(0) / 0.01 - 1.0).abs() < 0.1, "{}", told(&diagnosis));
+    assert!(diagnosis.departures.is_empty(), "{:?}", diagnosis.departures);
+}
+
+#[test]
 fn ac_coupling_is_a_high_pass_and_no_dashpots_to_ground() {
     named(&on(EffectKind::ChannelHighpass, Place::Response("3".into()), &[1.5]), &four_pairs(), 14, 0.1);
     named(&on(EffectKind::ChannelHighpass, Place::Force, &[1.5]), &eight_pairs(), 15, 0.1);

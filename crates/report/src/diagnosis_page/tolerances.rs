@@ -34,7 +34,7 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
         table = table
             .words(*name, |(index, own)| quantity_in(model.ended_at(*index), None, &scale(*index, own)))
             .numbers(format!("departure, {name}"), "std", |(index, own)| match own.std {
-                Some(_) => significant(model.departure(*index), 2),
+                Some(_) => significant(model.deviations(*index), 2),
                 None => "free".to_owned(),
             });
     }
