@@ -1,6 +1,8 @@
 //! One record among several that is another multiple of what the fixture makes of it: its unit, range or sign is wrong, and no place of a structure is.
 
+use crate::candidate::{Candidate, candidate};
 use crate::settings::statements::odd_record::{APART, FEWEST, OTHERS};
+use jointscope_fixture::{EffectKind, Place};
 use jointscope_spectra::{FrfPair, median};
 use num_complex::Complex64;
 
@@ -30,6 +32,12 @@ impl OddRecord {
         let lines = (measured.len() / pairs.len().max(1)).max(1);
         let records = measured.chunks_exact(lines).zip(predicted.chunks_exact(lines));
         OddRecord::among(pairs, &records.map(|(m, p)| multiple(m, p)).collect::<Option<Vec<f64>>>()?)
+    }
+
+    /// The gain of that record as a name: no other record may have one of its own where the fixture does not say so.
+    pub(crate) fn as_a_name(&self) -> Candidate {
+        let place = Place::Record(self.frf.to_string());
+        candidate(EffectKind::ChannelGain, place, None, vec![vec![self.factor]])
     }
 
     /// The one of these FRFs whose multiple stands farther from those of the others than these from each other, by much.

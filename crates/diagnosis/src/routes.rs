@@ -57,6 +57,10 @@ pub(crate) fn judged(
     let division = Division::of(fitter.observation, options)?;
     let given = Given { fixture, exact: options.exact };
     let refitted = given.without_effects(fitter).ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
+    if let Some(found) = refitted.explained_by_odd_record(fitter) {
+        let start = Start::Found(Box::new(found));
+        return Ok(by_lines(fitter, refitted, given, start, None, division.as_ref()));
+    }
     let without_effects = refitted.clone().with_wrong_quantities(fitter);
     // Where the fixture as refitted leaves more than noise, the comparison by modes says whether the model itself is in error: if it is, the noise
     // of the lines decides nothing.
@@ -310,6 +314,9 @@ fn by_lines(
 fn blind(fitter: &Fitter, given: Given, of_whole: Option<&ModalJudgement>) -> Option<Search> {
     fitter.watch.stage("searching without the lines that are held out");
     let refitted = given.without_effects(fitter)?;
+    if let Some(found) = refitted.explained_by_odd_record(fitter) {
+        return Some(Search::continued(fitter, refitted, &found));
+    }
     let refitted = if of_whole.is_none() { refitted.refitted_widely(fitter) } else { refitted };
     let without_effects = refitted.with_wrong_quantities(fitter);
     let modal = of_whole.and_then(|whole| {

@@ -5,12 +5,14 @@ use crate::catalogue::{catalogue, with_wrong_quantities};
 use crate::evidence::{cost, deviates_by_chance, explains, nothing_can_be_stated};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
+use crate::odd_record::OddRecord;
 use crate::penalty::{parameter_penalty, penalty};
 use crate::ranking::Ranking;
 use crate::settings::Settings;
 use crate::together::as_one;
 use crate::{Hypothesis, Observation, Watch};
 use jointscope_fixture::Fixture;
+use jointscope_spectra::FrfPair;
 
 /// The outcome of a search.
 #[derive(Debug, Clone)]
@@ -29,11 +31,23 @@ pub struct Search {
     pub(crate) is_sure: bool,
 }
 
+/// The gain of the record that is another multiple of what the fixture as it stands makes of it than all others, as a name; that of a channel where it is the only record.
+fn odd_record(observation: &Observation, nominal: &Fit) -> Option<Candidate> {
+    let pairs = observation.pairs();
+    let odd = OddRecord::of(pairs, observation.values(), &nominal.predicted)?;
+    let has_another = |same: &dyn Fn(&FrfPair) -> bool| pairs.iter().filter(|pair| same(pair)).count() > 1;
+    let is_one_of_several = has_another(&|pair| pair.response == odd.frf.response)
+        && has_another(&|pair| pair.reference == odd.frf.reference);
+    is_one_of_several.then(|| odd.as_a_name())
+}
+
 impl Search {
     /// The fixture as it stands, not refitted, and nothing searched for yet. `None` where it predicts no finite FRFs.
     pub(crate) fn as_stated(fitter: &Fitter, fixture: &Fixture, exact: bool) -> Option<Self> {
         let nominal = Fit::at(Hypothesis::nominal(fixture, exact), fitter.observation)?;
-        let candidates = catalogue(fixture, fitter.observation);
+        let mut candidates = catalogue(fixture, fitter.observation);
+        let odd = odd_record(fitter.observation, &nominal);
+        candidates.extend(odd.filter(|odd| candidates.iter().all(|known| known.place != odd.place)));
         Some(Search {
             refitted: nominal.clone(),
             repaired: nominal.clone(),
@@ -63,6 +77,13 @@ impl Search {
         let count = fitter.settings.selection.wrong;
         let candidates = with_wrong_quantities(&self.candidates, &self.refitted.hypothesis, count);
         Search { candidates, ..self }
+    }
+
+    /// The fixture with the gain of the one record that stands alone, where that explains the lines down to their noise: all that an odd record spoils is spared then.
+    pub(crate) fn explained_by_odd_record(&self, fitter: &Fitter) -> Option<Search> {
+        let odd = odd_record(fitter.observation, &self.nominal)?;
+        let repaired = fitter.refitted(&self.nominal.hypothesis.with(odd.effect(0)))?;
+        explains(fitter, &repaired, true).then(|| Search { repaired, ..self.clone() })
     }
 
     /// What explains the lines down to their noise among few names, for a share of all work; `None` where nothing does.

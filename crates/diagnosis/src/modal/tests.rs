@@ -205,7 +205,7 @@ fn what_leaves_much_of_lines_that_modes_do_not_tell_is_a_part_of_it_and_what_spo
 }
 
 #[test]
-fn gains_of_records_that_are_anything_leave_no_fixture_consistent_and_the_odd_record_is_told() {
+fn gains_of_records_that_are_anything_leave_no_fixture_consistent_and_the_odd_record_is_named() {
     let fixture = Fixture::from_json(BLOCKS).unwrap();
     let exact = recorded(&Hypothesis::nominal(&fixture, false));
     let count = exact.lines().len();
@@ -218,10 +218,11 @@ fn gains_of_records_that_are_anything_leave_no_fixture_consistent_and_the_odd_re
     assert!(judged.errors[0].is_none(), "modes are those of the fixture");
     assert_eq!(judged.verdict, Verdict::Unexplained);
     let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
-    assert_ne!(diagnosis.verdict, Verdict::Consistent);
-    let odd = diagnosis.odd_record().unwrap();
-    assert_eq!(odd.frf, exact.pairs()[1]);
-    assert!((9.80665 * odd.factor - 1.0).abs() < 0.05, "{odd:?}");
+    assert_eq!(diagnosis.verdict, Verdict::Explained);
+    let [found] = &diagnosis.findings[..] else { panic!("{:?}", diagnosis.findings) };
+    assert_eq!(found.effect.place, Place::Record(exact.pairs()[1].to_string()));
+    assert!((9.80665 * found.effect.value(0) - 1.0).abs() < 1e-3, "{found:?}");
+    assert!(found.probability > 0.9);
 }
 
 #[test]
