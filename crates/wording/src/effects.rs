@@ -49,6 +49,7 @@ impl Sized<'_> {
             Case::Within(low, high) => low < leading && leading < high,
             Case::Rotation => self.effect.dof == Some(Dof::Rotation),
             Case::Record => matches!(self.effect.place, Place::Record(_)),
+            Case::Force => self.effect.place == Place::Force,
             Case::Response => matches!(self.effect.place, Place::Response(_)),
             Case::Reference => matches!(self.effect.place, Place::Reference(_)),
             Case::OnlySure(parameter) => {

@@ -192,7 +192,7 @@ mod tests {
         let body = || Place::Body("B".into());
         let joint = || Place::Joint("J".into());
         type Case<'a> = (EffectKind, Place, Option<Dof>, &'a [f64], &'a [&'a str]);
-        let cases: [Case; 24] = [
+        let cases: [Case; 25] = [
             (
                 EffectKind::AddedMass,
                 body(),
@@ -265,6 +265,13 @@ mod tests {
                 None,
                 &[-1.0],
                 &["reference 1", "wrong sign"],
+            ),
+            (
+                EffectKind::ChannelGain,
+                Place::Force,
+                None,
+                &[1.03],
+                &["force", "1.03", "sensors that stay on"],
             ),
             (EffectKind::ChannelDelay, Place::Response("4".into()), None, &[22e-6], &["lags", "22.00 µs"]),
             (EffectKind::SensorMass, Place::Response("4".into()), None, &[0.012], &["12.00 g", "moved"]),
