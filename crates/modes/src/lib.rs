@@ -56,6 +56,7 @@ mod scatter;
 mod selection;
 mod settings;
 mod stabilization;
+mod uneven_scale;
 
 pub use analysis::{ModalAnalysis, ModesOptions, ResidualTerms};
 pub use error::ModesError;
@@ -64,3 +65,4 @@ pub use matching::{ExpectedMode, Match, Matches, match_modes};
 pub use mode::{Mode, mac};
 pub use scatter::Drift;
 pub use stabilization::{ChartPole, Stability};
+pub use uneven_scale::UnevenScale;

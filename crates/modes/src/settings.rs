@@ -161,6 +161,16 @@ pub(crate) mod merged_lines {
     pub(crate) const SMOOTH: f64 = 0.03;
 }
 
+/// A record of another scale than the others.
+pub(crate) mod uneven_scale {
+    /// Share of the half-bandwidth within which two poles are one.
+    pub(crate) const SAME_POLE: f64 = 0.1;
+    /// Fewest modes that must be there twice: one may be two that are close.
+    pub(crate) const FEWEST: usize = 2;
+    /// How far apart a factor may be from mode to mode, and a minor of the others from nothing: what a record that is off by less makes of modes noise may make, too.
+    pub(crate) const ALIKE: f64 = 0.1;
+}
+
 /// Measured modes and those of a model.
 pub(crate) mod matching {
     /// Frequencies apart by more than this share are of different modes.

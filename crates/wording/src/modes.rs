@@ -1,9 +1,10 @@
 //! What a reader of the modes should know.
 
 use crate::Remarks;
+use crate::format::significant;
 use crate::joint::merging;
-use jointscope_modes::{ModalAnalysis, Mode};
-use jointscope_spectra::in_sentence;
+use jointscope_modes::{ModalAnalysis, Mode, UnevenScale};
+use jointscope_spectra::{FrfPair, in_sentence};
 
 /// How far to trust the modes.
 impl Remarks for ModalAnalysis {
@@ -21,6 +22,7 @@ impl Remarks for ModalAnalysis {
                     .to_owned(),
             );
         }
+        all.extend(self.uneven_scale().map(|uneven| of_uneven_scale(self.pairs(), &uneven)));
         for (frf, pair) in self.pairs().iter().enumerate() {
             if self.measured().values(frf).iter().all(|value| value.norm_sqr() == 0.0) {
                 all.push(format!("FRF {pair} is zero on all lines: it was left out"));
@@ -61,6 +63,16 @@ impl Remarks for ModalAnalysis {
         all.extend(self.modes.iter().flat_map(of_mode));
         all
     }
+}
+
+fn of_uneven_scale(pairs: &[FrfPair], uneven: &UnevenScale) -> String {
+    let of = |(frf, factor): &(usize, f64)| format!("{} by {}", pairs[*frf], significant(*factor, 3));
+    let frfs: Vec<String> = uneven.frfs.iter().map(of).collect();
+    let which = if frfs.len() == 1 { "one FRF is" } else { "one of these FRFs is" };
+    format!(
+        "modes are there twice, for {which} of another scale than the others make of it: {}; look at units, ranges and signs, and measure or convert it again",
+        frfs.join(", ")
+    )
 }
 
 fn of_mode(mode: &Mode) -> impl Iterator<Item = String> {

@@ -103,6 +103,34 @@ fn a_matrix_with_gaps_shares_poles_only_and_says_so() {
 }
 
 #[test]
+fn a_record_of_another_scale_doubles_every_mode_and_is_told() {
+    let nine: Vec<(usize, usize)> = (2..5).flat_map(|o| [(o, 1), (o, 2), (o, 3)]).collect();
+    let six: Vec<(usize, usize)> = nine.iter().copied().filter(|(_, i)| *i < 3).collect();
+    let scaled = |pairs: &[(usize, usize)], factor: f64| {
+        let set = of(&three(), pairs, &lines(), 5);
+        let set = set.with_values(|at, value| if at / 401 == 3 { factor * value } else { value });
+        analyse(&set)
+    };
+    for factor in [1.0 / 9.80665, -1.0] {
+        let analysis = scaled(&nine, factor);
+        let uneven = analysis.uneven_scale().unwrap();
+        let [(3, told)] = uneven.frfs[..] else { panic!("{uneven:?}") };
+        assert!((told / factor - 1.0).abs() < 0.02, "{uneven:?}");
+        assert!(analysis.remarks().iter().any(|remark| remark.contains("one FRF is of another scale")));
+    }
+    // To one response with two references it may be either, of two by two it may be any.
+    for (pairs, count) in [(&six[..], 2), (&FOUR[..], 4)] {
+        let told = scaled(pairs, 0.5).uneven_scale().unwrap().frfs;
+        assert_eq!(told.len(), count);
+        assert!(told.iter().all(|(_, factor)| (factor.ln().abs() - 2f64.ln()).abs() < 0.02), "{told:?}");
+    }
+    assert_eq!(scaled(&six, 1.0).uneven_scale(), None);
+    // Two that are really close are two.
+    let close = [three(), vec![mode(120.01, 0.003, &[-0.9, 0.5, 0.3, 0.2])]].concat();
+    assert_eq!(analyse(&of(&close, &six, &lines(), 6)).uneven_scale(), None);
+}
+
+#[test]
 fn one_frf_does_and_says_what_it_costs() {
     let analysis = analyse(&of(&three(), &FOUR[..1], &lines(), 5));
     meets(&analysis, &three());
