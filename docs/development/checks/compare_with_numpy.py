@@ -31,6 +31,7 @@ import tempfile
 import numpy as np
 import pyuff
 from scipy.stats import binom, kstest
+from slips_with_numpy import stated
 
 LINES = np.arange(5.0, 1200.1, 2.5)
 PAIRS = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")]
@@ -49,22 +50,6 @@ KINDS = {
 }
 NUMBERS = ["K11", "K12", "K22", "C11", "C12", "C22"]
 LOSS = 0.01
-
-
-def stated(random):
-    """A fixture file of two blocks."""
-    quantity = lambda value, std: {"value": float(value), "std": float(std)}
-    masses, lengths, gap = random.uniform(0.9, 2.5, 2), random.uniform([0.05, 0.06], [0.08, 0.1]), random.uniform(0.05, 0.08)
-    inertias = masses * (lengths**2 + random.uniform(0.03, 0.06) ** 2) / 12
-    second = random.uniform(2.5e-10, 4.5e-10)
-    body = lambda at, x: {"mass": quantity(masses[at], 1e-3 * masses[at]), "inertia": quantity(inertias[at], 5e-3 * inertias[at]), "x_cg": quantity(x, 1e-4)}
-    point = lambda own, x, std: {"body": own, "x": quantity(x, std)}
-    return {
-        "bodies": {"A": body(0, -lengths[0] / 2), "B": body(1, gap + lengths[1] / 2)},
-        "points": {"1": point("A", -0.93 * lengths[0], 2e-4), "2": point("A", 0, 1e-4), "3": point("B", gap, 1e-4), "4": point("B", gap + 0.94 * lengths[1], 2e-4)},
-        "joints": {"J": {"from": "2", "to": "3", "beam": {"youngs_modulus": quantity(2.07e11, 2e9), "second_moment": quantity(second, 0.01 * second)}}},
-        "damping": {"modal_ratios": [quantity(0.004, 1e-3), quantity(0.005, 1e-3)]},
-    }
 
 
 def quantities(fixture):
