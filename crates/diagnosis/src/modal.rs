@@ -11,7 +11,7 @@
 //! * [`changes`]: the modes of two states side by side;
 //! * [`elsewhere`]: where else along its body an effect explains the modes;
 //! * [`features`]: a recording as its modes tell it;
-//! * [`standing`]: where a hypothesis stands beside the recorded modes;
+//! * [`problem`]: the modes of a hypothesis, paired with the recorded ones;
 //! * [`descent`]: its parameters fitted at given sizes of error;
 //! * [`fit`]: one hypothesis at its most probable parameters and sizes of error;
 //! * [`evidence`]: how probable it makes what was recorded;
@@ -53,10 +53,10 @@ mod needs;
 mod places;
 mod predicting;
 mod prior;
+mod problem;
 mod search;
 mod searcher;
 mod sizes;
-mod standing;
 mod starts;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]

@@ -135,9 +135,9 @@ impl Ridge<'_> {
         start.coordinates[self.coordinate] = to;
         let mut priors = self.named.fit.priors.clone();
         priors[self.coordinate] = Prior { mean: to, std: HELD };
-        let standing = problem.standing(&start)?;
+        let paired = problem.paired_modes(&start)?;
         let set_out = (None, SetOut::Beside(from.evidence.sizes), ANY);
-        let fit = problem.fitted_from(&start, standing, &priors, set_out)?;
+        let fit = problem.fitted_from(&start, paired, &priors, set_out)?;
         let covariance = fit.covariance_at(&self.searcher.widened(&fit))?;
         // Beyond its bound nothing is possible, whatever derivatives say.
         let stopped = fit.hypothesis.stopped();

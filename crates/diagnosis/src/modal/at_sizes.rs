@@ -4,7 +4,7 @@ use crate::Hypothesis;
 use crate::modal::descent::{Descent, settings};
 use crate::modal::fit::ModalFit;
 use crate::modal::prior::Prior;
-use crate::modal::standing::{Iterate, Problem};
+use crate::modal::problem::{Iterate, Problem};
 use jointscope_inference::{Covariance, LeastSquares, Precision, descend};
 use jointscope_linalg::Cholesky;
 use jointscope_model_error::ErrorSizes;
@@ -19,7 +19,7 @@ impl Problem<'_> {
         let descent = self.descent_at(fit, &fit.priors, sizes)?;
         let start = Iterate {
             hypothesis: fit.hypothesis.clone(),
-            modelled: fit.standing.modelled.clone(),
+            modelled: fit.paired.modelled.clone(),
             residual: fit.residual.clone(),
         };
         let point = descend(&descent, start, Some(fit.slopes.clone()), &settings(usize::MAX))?.point;
@@ -36,8 +36,8 @@ impl Problem<'_> {
         priors: &'a [Prior],
         sizes: &ErrorSizes,
     ) -> Option<Descent<'a>> {
-        let standing = &fit.standing;
-        let factor = Cholesky::of(standing.comparison.count(), &standing.comparison.covariance(sizes))?;
-        Some(Descent { problem: self, standing, factor, priors })
+        let paired = &fit.paired;
+        let factor = Cholesky::of(paired.comparison.count(), &paired.comparison.covariance(sizes))?;
+        Some(Descent { problem: self, paired, factor, priors })
     }
 }

@@ -32,7 +32,7 @@ impl ModalJudgement {
     /// Whether the comparison rests on modes that may not be all there are, a free fit short of the noise or modes without a partner, or on records that
     /// are not alike, and a search by lines may do better.
     pub(crate) fn is_dubious(&self, fitter: &Fitter) -> bool {
-        let alone = self.search.best.fit.standing.pairing.alone();
+        let alone = self.search.best.fit.paired.pairing.alone();
         // Records taken one after another, their noise told by scatter alone: an outlier among their gains passes for an error of all gains.
         let unsure = self.is_unexplained() && fitter.observation.has_scatter_for_noise();
         let has_poles = self.free_fit <= fitter.settings.modal.hopeless;

@@ -19,7 +19,7 @@ pub(super) struct States<'a> {
 impl States<'_> {
     /// The modes of both, with what `found` makes of them, ascending.
     pub(super) fn modes(&self, found: &Named) -> Vec<ModeChange> {
-        let of_baseline = &self.calibrated.standing.pairing.pairs;
+        let of_baseline = &self.calibrated.paired.pairing.pairs;
         let modelled = |b: usize| of_baseline.iter().find(|(other, _)| *other == b).map(|(_, m)| *m);
         let recorded = |m: usize| self.own.pairs.iter().find(|(_, other)| *other == m).map(|(r, _)| *r);
         let mut all: Vec<ModeChange> = Vec::new();
@@ -61,7 +61,7 @@ impl States<'_> {
 
     /// The mode that is now what mode `b` was, of those that the model does not have: the nearest of either to the other.
     fn unpaired(&self, b: usize) -> Option<usize> {
-        let of_baseline = &self.calibrated.standing.pairing.pairs;
+        let of_baseline = &self.calibrated.paired.pairing.pairs;
         let was = |b: &usize| !of_baseline.iter().any(|(other, _)| other == b);
         let now = |r: &usize| !self.own.pairs.iter().any(|(other, _)| other == r);
         let apart =
@@ -78,9 +78,9 @@ impl States<'_> {
 
     /// By how much the effects found change mode `r`, which is the calibrated model's `m`.
     fn predicted(&self, found: &Named, r: usize, m: usize) -> Option<ModeState> {
-        let standing = &found.fit.standing;
-        let (_, own) = standing.pairing.pairs.iter().find(|(other, _)| *other == r)?;
-        let [own, was] = [&standing.modelled.modes[*own], &self.calibrated.standing.modelled.modes[m]];
+        let paired = &found.fit.paired;
+        let (_, own) = paired.pairing.pairs.iter().find(|(other, _)| *other == r)?;
+        let [own, was] = [&paired.modelled.modes[*own], &self.calibrated.paired.modelled.modes[m]];
         (!found.names.is_empty()).then(|| ratio(&own.pole, &was.pole))
     }
 }

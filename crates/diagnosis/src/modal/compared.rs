@@ -73,9 +73,9 @@ impl ModalJudgement {
         let before_error = problem.error(&calibrated, settings.modal.adequate.0);
         watch.stage("fitting the modes of the recording");
         let now = recorded(observation, &calibrated.hypothesis)?;
-        let model = &calibrated.standing.modelled;
+        let model = &calibrated.paired.modelled;
         let own = Pairing::of(&now, model);
-        let change = now.relative_to(&before.recorded, model, [&own, &calibrated.standing.pairing])?;
+        let change = now.relative_to(&before.recorded, model, [&own, &calibrated.paired.pairing])?;
         // What is stated is the error that both states share; the change has its own.
         let shared = before.known.scales;
         let scales = ErrorSizes { gain: shared.gain, ..settings.modal.repeated };

@@ -1,7 +1,7 @@
 //! Parameters fitted to the recorded modes at given sizes of the model's error.
 
 use crate::modal::prior::Prior;
-use crate::modal::standing::{Iterate, Problem, Standing};
+use crate::modal::problem::{Iterate, PairedModes, Problem};
 use crate::settings::modal::descent::{CONVERGENCE, CURVED_VALLEY, DAMPING, DERIVATIVES, MOST_STEPS, REUSE};
 use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend, dot};
 use jointscope_linalg::Cholesky;
@@ -36,7 +36,7 @@ pub(super) struct Rest {
 /// Parameters to be fitted at given sizes of the error.
 pub(super) struct Descent<'a> {
     pub problem: &'a Problem<'a>,
-    pub standing: &'a Standing,
+    pub paired: &'a PairedModes,
     /// Of the covariance of noise and error.
     pub factor: Cholesky,
     pub priors: &'a [Prior],
@@ -51,7 +51,7 @@ impl Descent<'_> {
     fn moved(&self, point: &Iterate, step: &[f64]) -> Option<Iterate> {
         let hypothesis = point.hypothesis.stepped(step);
         let modelled = self.problem.modelled(&hypothesis, &point.modelled)?;
-        let residual = self.problem.residual(self.standing, &modelled);
+        let residual = self.problem.residual(self.paired, &modelled);
         Some(Iterate { hypothesis, residual, modelled })
     }
 
@@ -78,7 +78,7 @@ impl LeastSquares for Descent<'_> {
     }
 
     fn derivatives(&self, point: &Iterate, _: Precision) -> Option<Vec<Vec<f64>>> {
-        self.problem.slopes_at(point, self.standing, self.priors)
+        self.problem.slopes_at(point, self.paired, self.priors)
     }
 
     fn equations(&self, point: &Iterate, slopes: &Vec<Vec<f64>>, _: &()) -> NormalEquations {
@@ -126,21 +126,20 @@ impl Problem<'_> {
     /// Where parameters come to rest at these sizes of the error, with derivatives taken there, and the evidence by these.
     pub(super) fn settled(
         &self,
-        standing: &Standing,
+        paired: &PairedModes,
         start: Iterate,
         derivatives: Vec<Vec<f64>>,
         (priors, sizes): (&[Prior], &ErrorSizes),
     ) -> Option<Rest> {
-        let factor = Cholesky::of(standing.comparison.count(), &standing.comparison.covariance(sizes))?;
-        let descent = Descent { problem: self, standing, factor, priors };
+        let factor = Cholesky::of(paired.comparison.count(), &paired.comparison.covariance(sizes))?;
+        let descent = Descent { problem: self, paired, factor, priors };
         let point = descend(&descent, start, Some(derivatives), &settings(DERIVATIVES))?.point;
         let derivatives = descent.derivatives(&point, Precision::Rough)?;
         let promised_there = descent.promised(&point, &descent.equations(&point, &derivatives, &()));
         let (linear, evidence) =
-            self.evidence(&point, priors, &derivatives, (&standing.comparison, Some(sizes)))?;
+            self.evidence(&point, priors, &derivatives, (&paired.comparison, Some(sizes)))?;
         // Of a fit at errors of nothing that finds they are not, the parameters are still to move, however still they stand there.
-        let factor =
-            Cholesky::of(standing.comparison.count(), &standing.comparison.covariance(&evidence.sizes))?;
+        let factor = Cholesky::of(paired.comparison.count(), &paired.comparison.covariance(&evidence.sizes))?;
         let there = Descent { factor, ..descent };
         let promised = there.promised(&point, &there.equations(&point, &derivatives, &()));
         Some(Rest { point, derivatives, linear, evidence, promised_there, promised })
@@ -150,10 +149,10 @@ impl Problem<'_> {
     pub(super) fn slopes_at(
         &self,
         point: &Iterate,
-        standing: &Standing,
+        paired: &PairedModes,
         priors: &[Prior],
     ) -> Option<Vec<Vec<f64>>> {
         let all = 0..point.hypothesis.coordinates.len();
-        self.slopes(&point.hypothesis, standing, &point.modelled, &point.residual, priors, all)
+        self.slopes(&point.hypothesis, paired, &point.modelled, &point.residual, priors, all)
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::Hypothesis;
 use crate::modal::prior::Prior;
-use crate::modal::standing::{Iterate, Problem};
+use crate::modal::problem::{Iterate, Problem};
 use jointscope_model_error::{Comparison, ErrorSizes, Evidence, Linear};
 
 impl Problem<'_> {

@@ -117,15 +117,15 @@ impl Searcher<'_> {
         // The end of a reach is no place to rest, whatever the evidence says that has a parameter less there.
         for _ in 0..self.settings.farther {
             let next = farther(&fit.hypothesis, &self.candidates[c]).and_then(|start| {
-                let standing = self.problem.standing(&start)?;
+                let paired = self.problem.paired_modes(&start)?;
                 let priors = self.priors(&start, &names);
-                self.problem.fitted_from(&start, standing, &priors, (None, set_out, least))
+                self.problem.fitted_from(&start, paired, &priors, (None, set_out, least))
             });
             let Some(next) = next else { break };
             fit = next;
         }
         // Modes that both recordings show are modes of both: no change loses one.
-        let pairs = |fit: &ModalFit| fit.standing.pairing.pairs.len();
+        let pairs = |fit: &ModalFit| fit.paired.pairing.pairs.len();
         let loses_modes = self.calibrated && pairs(&fit) < pairs(&base.fit);
         (!loses_modes).then(|| Named { names, exact: self.is_exact(&fit), fit })
     }
@@ -139,10 +139,10 @@ impl Searcher<'_> {
         (set_out, least): (SetOut, f64),
     ) -> Option<Named> {
         let names: Vec<usize> = base.names.iter().chain(added).copied().collect();
-        let standing = self.problem.standing(hypothesis)?;
-        let nearby = self.nearby(hypothesis, &standing, &base.fit);
+        let paired = self.problem.paired_modes(hypothesis)?;
+        let nearby = self.nearby(hypothesis, &paired, &base.fit);
         let priors = self.priors(hypothesis, &names);
-        let fit = self.problem.fitted_from(hypothesis, standing, &priors, (nearby, set_out, least))?;
+        let fit = self.problem.fitted_from(hypothesis, paired, &priors, (nearby, set_out, least))?;
         Some(Named { names, exact: self.is_exact(&fit), fit })
     }
 
@@ -156,8 +156,8 @@ impl Searcher<'_> {
             start = start.without(index);
         }
         let set_out = (None, SetOut::Beside(named.fit.evidence.sizes), least);
-        let standing = self.problem.standing(&start)?;
-        let fit = self.problem.fitted_from(&start, standing, &self.priors(&start, &names), set_out)?;
+        let paired = self.problem.paired_modes(&start)?;
+        let fit = self.problem.fitted_from(&start, paired, &self.priors(&start, &names), set_out)?;
         Some(Named { names, exact: self.is_exact(&fit), fit })
     }
 
@@ -179,10 +179,10 @@ impl Searcher<'_> {
             .collect();
         let fit = |(to, from): (&Named, &Named)| {
             let start = to.fit.hypothesis.with_tolerances_of(&from.fit.hypothesis);
-            let standing = self.problem.standing(&start)?;
+            let paired = self.problem.paired_modes(&start)?;
             // What comes to no more than is known already is not followed to its rest.
             let set_out = (None, SetOut::Beside(from.fit.evidence.sizes), to.fit.ln);
-            let fit = self.problem.fitted_from(&start, standing, &to.fit.priors, set_out)?;
+            let fit = self.problem.fitted_from(&start, paired, &to.fit.priors, set_out)?;
             Some(Named { names: to.names.clone(), exact: self.is_exact(&fit), fit })
         };
         let anew = self.problem.work.each(starts, STARTS, fit);

@@ -1,7 +1,7 @@
 //! A recording as its modes tell it, and what is known of a model's error beforehand: what hypotheses are held against.
 
+use crate::modal::problem::Problem;
 use crate::modal::sizes::known;
-use crate::modal::standing::Problem;
 use crate::settings::ModalSettings;
 use crate::settings::modal::recorded::SPARE_ORDERS;
 use crate::work::Work;

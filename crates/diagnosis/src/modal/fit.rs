@@ -2,7 +2,7 @@
 
 use crate::Hypothesis;
 use crate::modal::prior::Prior;
-use crate::modal::standing::{Iterate, Problem, Standing};
+use crate::modal::problem::{Iterate, PairedModes, Problem};
 use crate::modal::turns::{Turns, are_alike};
 use crate::rarity::rarity;
 use crate::settings::modal::descent::STANDS_STILL;
@@ -19,7 +19,7 @@ use jointscope_model_error::{ErrorSizes, Evidence, Linear, Pairing};
 pub(crate) struct ModalFit {
     pub hypothesis: Hypothesis,
     pub priors: Vec<Prior>,
-    pub standing: Standing,
+    pub paired: PairedModes,
     pub linear: Linear,
     pub evidence: Evidence,
     /// Derivatives of the model's features by each coordinate, for a step of one.
@@ -55,7 +55,7 @@ impl ModalFit {
 
     /// Whether the features' misfit, errors of the model at their sizes and departures counted, is no larger than chance makes it.
     pub(crate) fn leaves_chance(&self) -> bool {
-        let comparison = &self.standing.comparison;
+        let comparison = &self.paired.comparison;
         let Some(factor) = Cholesky::of(comparison.count(), &comparison.covariance(&self.evidence.sizes))
         else {
             return false;
@@ -68,7 +68,7 @@ impl ModalFit {
 
     /// Covariance of the coordinates of the linear model where an error has these sizes.
     pub(crate) fn covariance_at(&self, sizes: &ErrorSizes) -> Option<Covariance> {
-        let comparison = &self.standing.comparison;
+        let comparison = &self.paired.comparison;
         let factor = Cholesky::of(comparison.count(), &comparison.covariance(sizes))?;
         let white = |slope: &Vec<f64>| {
             let mut white = slope.clone();
@@ -91,46 +91,46 @@ impl ModalFit {
 }
 
 impl Problem<'_> {
-    /// The most probable parameters from where `start` stands, and the sizes of the error there.
+    /// The most probable parameters from `start` on, and the sizes of the error there.
     pub(crate) fn fitted(&self, start: &Hypothesis, priors: &[Prior]) -> Option<ModalFit> {
-        self.fitted_from(start, self.standing(start)?, priors, (None, SetOut::Both, ANY))
+        self.fitted_from(start, self.paired_modes(start)?, priors, (None, SetOut::Both, ANY))
     }
 
     /// [`Problem::fitted`], and from pairings beside the most likely one at the start where errors of the usual size do not do.
     pub(crate) fn fitted_however_paired(&self, start: &Hypothesis, priors: &[Prior]) -> Option<ModalFit> {
-        let standing = self.standing(start)?;
-        let others = standing.pairing.others(self.recorded, &standing.modelled);
-        let modelled = standing.modelled.clone();
-        let first = self.fitted_from(start, standing, priors, (None, SetOut::Both, ANY));
+        let paired = self.paired_modes(start)?;
+        let others = paired.pairing.others(self.recorded, &paired.modelled);
+        let modelled = paired.modelled.clone();
+        let first = self.fitted_from(start, paired, priors, (None, SetOut::Both, ANY));
         if others.is_empty() || first.as_ref().is_some_and(|fit| self.is_usual(&fit.evidence.sizes)) {
             return first;
         }
         let fixture = start.to_fixture().ok()?;
         let fitted = |pairing: Pairing| {
-            let standing = self.paired((start, &fixture), modelled.clone(), pairing)?;
-            self.fitted_from(start, standing, priors, (None, SetOut::Both, ANY))
+            let paired = self.paired_as((start, &fixture), modelled.clone(), pairing)?;
+            self.fitted_from(start, paired, priors, (None, SetOut::Both, ANY))
         };
         others.into_iter().map(fitted).fold(first, more_probable)
     }
 
-    /// [`Problem::fitted`] from where `start` is known to stand, with derivatives known from nearby where there are any. What stays below `least` in ln p is not followed to
+    /// [`Problem::fitted`] from a start whose modes are `paired` already, with derivatives known from nearby where there are any. What stays below `least` in ln p is not followed to
     /// its rest, nor from other sizes of error.
     pub(crate) fn fitted_from(
         &self,
         start: &Hypothesis,
-        standing: Standing,
+        paired: PairedModes,
         priors: &[Prior],
         (nearby, set_out, least): (Option<Vec<Vec<f64>>>, SetOut, f64),
     ) -> Option<ModalFit> {
-        let (point, standing) = self.at_start(start, standing);
+        let (point, paired) = self.at_start(start, paired);
         let count = point.residual.len();
         let nearby = nearby.filter(|slopes| slopes.iter().all(|slope| slope.len() == count));
         let derivatives = match nearby {
             Some(nearby) => nearby,
-            None => self.slopes_at(&point, &standing, priors)?,
+            None => self.slopes_at(&point, &paired, priors)?,
         };
         let from = |sizes| {
-            self.fitted_with((point.clone(), derivatives.clone()), standing.clone(), priors, (sizes, least))
+            self.fitted_with((point.clone(), derivatives.clone()), paired.clone(), priors, (sizes, least))
         };
         let mut best = from(Some(*self.sizes));
         if let SetOut::Beside(sizes) = set_out {
@@ -147,11 +147,11 @@ impl Problem<'_> {
     }
 
     /// Where a fit from `start` sets out, errors of its damping counted as those of ratios alone.
-    pub(super) fn at_start(&self, start: &Hypothesis, standing: Standing) -> (Iterate, Standing) {
-        let standing = Standing { comparison: standing.comparison.with_ratios_alone(), ..standing };
-        let residual = self.residual(&standing, &standing.modelled);
-        let point = Iterate { hypothesis: start.clone(), modelled: standing.modelled.clone(), residual };
-        (point, standing)
+    pub(super) fn at_start(&self, start: &Hypothesis, paired: PairedModes) -> (Iterate, PairedModes) {
+        let paired = PairedModes { comparison: paired.comparison.with_ratios_alone(), ..paired };
+        let residual = self.residual(&paired, &paired.modelled);
+        let point = Iterate { hypothesis: start.clone(), modelled: paired.modelled.clone(), residual };
+        (point, paired)
     }
 
     /// Whether no error is larger than the usual one.
@@ -163,14 +163,14 @@ impl Problem<'_> {
     fn fitted_with(
         &self,
         (mut point, mut derivatives): (Iterate, Vec<Vec<f64>>),
-        mut standing: Standing,
+        mut paired: PairedModes,
         priors: &[Prior],
         (sizes, least): (Option<ErrorSizes>, f64),
     ) -> Option<ModalFit> {
         let rarity = rarity(&point.hypothesis);
         let mut sizes = match sizes {
             Some(sizes) => sizes,
-            None => self.evidence(&point, priors, &derivatives, (&standing.comparison, None))?.1.sizes,
+            None => self.evidence(&point, priors, &derivatives, (&paired.comparison, None))?.1.sizes,
         };
         let (mut best, mut otherwise, mut stale): (Option<ModalFit>, Option<ModalFit>, Option<ModalFit>) =
             (None, None, None);
@@ -179,7 +179,7 @@ impl Problem<'_> {
         let mut turns = Turns::none();
         for round in 0..MOST_ROUNDS {
             // What fails on the way takes nothing from what was found before.
-            let Some(end) = self.settled(&standing, point, derivatives, (priors, &sizes)) else { break };
+            let Some(end) = self.settled(&paired, point, derivatives, (priors, &sizes)) else { break };
             (point, derivatives) = (end.point, end.derivatives);
             let before = best.as_ref().map(|fit| fit.ln);
             let asked = end.evidence.sizes;
@@ -199,7 +199,7 @@ impl Problem<'_> {
             };
             let stands = evidence.is_some();
             sizes = turns.toward(&next, &sizes);
-            let ln = end.evidence.ln + standing.pairing.alone() - rarity;
+            let ln = end.evidence.ln + paired.pairing.alone() - rarity;
             let given_up =
                 round >= PATIENT_ROUNDS && ln < least && ln - ahead < PROMISING_SHARE * (least - ln);
             ahead = ln;
@@ -208,12 +208,12 @@ impl Problem<'_> {
                 let fit = ModalFit {
                     hypothesis: point.hypothesis.clone(),
                     priors: priors.to_vec(),
-                    standing: Standing { modelled: point.modelled.clone(), ..standing.clone() },
+                    paired: PairedModes { modelled: point.modelled.clone(), ..paired.clone() },
                     linear: end.linear,
                     evidence,
                     slopes: derivatives.clone(),
                     residual: point.residual.clone(),
-                    ln: evidence.ln + standing.pairing.alone() - rarity,
+                    ln: evidence.ln + paired.pairing.alone() - rarity,
                 };
                 best = more_probable(best, Some(fit));
             }
@@ -228,12 +228,12 @@ impl Problem<'_> {
             if last || !(ends || strays) {
                 continue;
             }
-            let Some(anew) = self.standing(&point.hypothesis) else { break };
-            let alike = anew.pairing.pairs == standing.pairing.pairs;
+            let Some(anew) = self.paired_modes(&point.hypothesis) else { break };
+            let alike = anew.pairing.pairs == paired.pairing.pairs;
             // Where the fit set out, damping may have turned the shapes' phases by far more or less than it does here.
-            let damped_like = anew.comparison.damps_like(&standing.comparison, self.sizes.damping);
+            let damped_like = anew.comparison.damps_like(&paired.comparison, self.sizes.damping);
             let turned = alike && strayed < MOST_STRAYS && !damped_like;
-            if ends && alike && anew.modelled.counts_like(&standing.modelled) && !turned {
+            if ends && alike && anew.modelled.counts_like(&paired.modelled) && !turned {
                 break;
             }
             point.residual = self.residual(&anew, &anew.modelled);
@@ -247,7 +247,7 @@ impl Problem<'_> {
             }
             idle = 0;
             otherwise = more_probable(otherwise, best.take());
-            standing = anew;
+            paired = anew;
         }
         more_probable(otherwise, best).or(stale)
     }

@@ -115,7 +115,7 @@ impl Judge<'_> {
             return false;
         }
         let usual = self.searcher.problem.no_larger(&best.fit, largest);
-        let density = |sizes| best.fit.linear.ln_density(&best.fit.standing.comparison, sizes);
+        let density = |sizes| best.fit.linear.ln_density(&best.fit.paired.comparison, sizes);
         let Some((before, now)) = density(&best.fit.evidence.sizes).zip(density(&usual)) else {
             return false;
         };

@@ -11,7 +11,7 @@ use crate::fitter::Fitter;
 use crate::modal::descent::settings;
 use crate::modal::fit::ModalFit;
 use crate::modal::judgement::ModalJudgement;
-use crate::modal::standing::{Iterate, Problem};
+use crate::modal::problem::{Iterate, Problem};
 use crate::search::Search;
 use crate::settings::ModalSettings;
 use crate::settings::effects::quantities::DEPARTED;
@@ -67,7 +67,7 @@ impl ModalJudgement {
 
     /// Whether something is recorded beside the modes of the model that is as wide as no mode of a structure.
     fn has_no_peak(&self) -> bool {
-        let pairs = &self.search.best.fit.standing.pairing.pairs;
+        let pairs = &self.search.best.fit.paired.pairing.pairs;
         let mut modes = self.features.recorded.modes.iter().enumerate();
         modes.any(|(at, mode)| mode.pole.damping_ratio > NO_PEAK && pairs.iter().all(|(own, _)| *own != at))
     }
@@ -116,8 +116,8 @@ struct Quantities<'a> {
 impl<'a> Quantities<'a> {
     fn of(problem: &'a Problem<'a>, fit: &'a ModalFit, found: &'a Hypothesis) -> Option<Self> {
         let hypothesis = found.with_effects_in_place()?;
-        let modelled = problem.modelled(&hypothesis, &fit.standing.modelled)?;
-        let residual = problem.residual(&fit.standing, &modelled);
+        let modelled = problem.modelled(&hypothesis, &fit.paired.modelled)?;
+        let residual = problem.residual(&fit.paired, &modelled);
         Some(Quantities { problem, fit, found, start: Iterate { hypothesis, modelled, residual } })
     }
 

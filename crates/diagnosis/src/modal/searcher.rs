@@ -4,7 +4,7 @@ use crate::candidate::Candidate;
 use crate::modal::fit::ModalFit;
 use crate::modal::known::Known;
 use crate::modal::prior::{Prior, priors};
-use crate::modal::standing::Problem;
+use crate::modal::problem::Problem;
 use crate::settings::ModalSettings;
 use crate::settings::modal::prior::CALIBRATED_QUANTITY;
 use crate::{Hypothesis, Watch};
@@ -108,14 +108,14 @@ impl Searcher<'_> {
 
     /// Sizes of the model's error that may be larger than the most probable ones: what uncertainties are stated with.
     pub(super) fn widened(&self, fit: &ModalFit) -> ErrorSizes {
-        fit.linear.mean_sizes(&fit.standing.comparison, self.problem.prior(), &fit.evidence)
+        fit.linear.mean_sizes(&fit.paired.comparison, self.problem.prior(), &fit.evidence)
     }
 
     /// What a fit gains in ln p over another where errors of the model have these sizes; nothing where the two compare other modes. Along the ridge of a mass that grows as it comes
     /// nearer to a clamp its deviation says little, and this all the same that it is there.
     fn gains_at(&self, sizes: &ErrorSizes, fit: &ModalFit, none: &ModalFit) -> f64 {
-        let density = |fit: &ModalFit| fit.linear.ln_density(&fit.standing.comparison, sizes);
-        let alike = fit.standing.pairing.pairs == none.standing.pairing.pairs;
+        let density = |fit: &ModalFit| fit.linear.ln_density(&fit.paired.comparison, sizes);
+        let alike = fit.paired.pairing.pairs == none.paired.pairing.pairs;
         density(fit).zip(density(none)).filter(|_| alike).map_or(0.0, |(with, without)| with - without)
     }
 

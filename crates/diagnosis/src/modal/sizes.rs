@@ -1,7 +1,7 @@
 //! Sizes of a model's error: what is known of them beforehand, and what a fit says of them.
 
 use crate::modal::fit::ModalFit;
-use crate::modal::standing::Problem;
+use crate::modal::problem::Problem;
 use crate::settings::ModalSettings;
 use crate::settings::modal::sizes::{AS_PROBABLE, BEYOND_ERRORS, LEAST_OF_STATED_DAMPING, NEGLIGIBLE};
 use jointscope_fixture::{Fixture, Place, StatedError};
@@ -100,7 +100,7 @@ impl Problem<'_> {
         if !self.stated.contains(&true) {
             return fit.evidence;
         }
-        let freed = fit.linear.evidence(&fit.standing.comparison, self.sizes, Some(&fit.evidence.sizes));
+        let freed = fit.linear.evidence(&fit.paired.comparison, self.sizes, Some(&fit.evidence.sizes));
         freed.unwrap_or(fit.evidence)
     }
 
@@ -114,8 +114,7 @@ impl Problem<'_> {
 
     /// Whether errors of so many times what is usual at the most make a fit no less probable: a size is known to some tenths of itself only, the less the fewer modes there are.
     fn is_as_probable_with(&self, most: f64, fit: &ModalFit) -> bool {
-        let at =
-            |sizes: &ErrorSizes| fit.linear.ln_evidence_at(&fit.standing.comparison, self.prior(), sizes);
+        let at = |sizes: &ErrorSizes| fit.linear.ln_evidence_at(&fit.paired.comparison, self.prior(), sizes);
         let both = at(&fit.evidence.sizes).zip(at(&self.no_larger(fit, most)));
         both.is_some_and(|(asked, held)| asked - held < AS_PROBABLE)
     }
@@ -123,13 +122,13 @@ impl Problem<'_> {
     /// Whether every mode has a partner and errors of the model gain less than this in ln p: among them another distribution of its damping, where no effect makes its own of that.
     pub(crate) fn is_exact(&self, fit: &ModalFit, gain: f64) -> bool {
         let least = self.sizes.times(ErrorSizes::LEAST);
-        let comparison = &fit.standing.comparison;
+        let comparison = &fit.paired.comparison;
         let without = || match fit.hypothesis.has_other_modes() {
             true => fit.linear.ln_density(comparison, &least),
             false => fit.linear.ln_density(&comparison.clone().with_damping_as_modelled(), &least),
         };
         let gained = || without().map_or(f64::INFINITY, |ln| self.seen(fit).ln - ln);
-        fit.standing.pairing.alone() == 0.0 && gained() < gain
+        fit.paired.pairing.alone() == 0.0 && gained() < gain
     }
 
     /// The largest size of an error, as a multiple of what is usual.
@@ -207,7 +206,7 @@ impl Problem<'_> {
         };
         let interval = |kind: usize| match holds(kind) {
             true => [sizes[kind]; 2],
-            false => fit.linear.size_interval(&fit.standing.comparison, self.sizes, &seen, kind),
+            false => fit.linear.size_interval(&fit.paired.comparison, self.sizes, &seen, kind),
         };
         let stated = |kind: usize| self.stated[kind].then_some(sizes[kind]);
         ModelError {

@@ -7,8 +7,8 @@ use crate::modal::evidence::linear;
 use crate::modal::fit::ModalFit;
 use crate::modal::known::Known;
 use crate::modal::prior::Prior;
+use crate::modal::problem::PairedModes;
 use crate::modal::searcher::{Named, STARTS, Searcher};
-use crate::modal::standing::Standing;
 use jointscope_fixture::{Effect, EffectKind, Place, QuantityKey, QuantityOwner, Starts};
 use jointscope_model_error::Linear;
 use std::f64::consts::TAU;
@@ -101,7 +101,7 @@ impl Searcher<'_> {
     /// best of all and the best of each candidate, those with a partner more and the others by themselves; the rest are left out.
     pub(super) fn starts(&self, base: &Named) -> Vec<Start> {
         // What resonates makes a mode more: where every mode has its partner, nothing of the kind is there.
-        let partners = base.fit.standing.pairing.alone() == 0.0;
+        let partners = base.fit.paired.pairing.alone() == 0.0;
         let idle = |c: usize| partners && self.candidates[c].kind == EffectKind::AttachedResonator;
         self.starts_of(base, |c| !base.names.contains(&c) && !idle(c))
     }
@@ -159,7 +159,7 @@ impl Searcher<'_> {
     /// Frequencies (Hz) at which the recording has a mode that a fit has not, and halfway from there to the next one that it has: what resonates beside a mode parts
     /// the two.
     fn unmatched(&self, fit: &ModalFit) -> Vec<f64> {
-        let Standing { modelled, pairing, .. } = &fit.standing;
+        let PairedModes { modelled, pairing, .. } = &fit.paired;
         let recorded = &self.problem.recorded.modes;
         let alone = (0..recorded.len()).filter(|&r| pairing.pairs.iter().all(|(other, _)| *other != r));
         let both = |r: usize| {
@@ -204,35 +204,35 @@ impl Searcher<'_> {
     /// The density at a start by derivatives taken there.
     fn density_by_itself(&self, hypothesis: &Hypothesis) -> Option<f64> {
         let problem = &self.problem;
-        let standing = problem.standing(hypothesis)?;
-        let residual = problem.residual(&standing, &standing.modelled);
+        let paired = problem.paired_modes(hypothesis)?;
+        let residual = problem.residual(&paired, &paired.modelled);
         let own = |at: &f64| Prior { mean: *at, std: self.settings.near };
         let mut local: Vec<Prior> = hypothesis.coordinates.iter().map(own).collect();
         let tolerances = self.priors(self.nominal, &[]);
         local[..tolerances.len()].copy_from_slice(&tolerances);
         let all = 0..local.len();
-        let slopes = problem.slopes(hypothesis, &standing, &standing.modelled, &residual, &local, all)?;
+        let slopes = problem.slopes(hypothesis, &paired, &paired.modelled, &residual, &local, all)?;
         let linear = linear(hypothesis, &local, &residual, &slopes);
-        Some(linear.ln_density(&standing.comparison, problem.sizes)? + standing.pairing.alone())
+        Some(linear.ln_density(&paired.comparison, problem.sizes)? + paired.pairing.alone())
     }
 
     /// A start with the density of the recorded features there, everything else linear about `base`.
     pub(super) fn scored(&self, candidate: usize, hypothesis: Hypothesis, base: &ModalFit) -> Option<Start> {
         let problem = &self.problem;
-        let standing = problem.standing(&hypothesis)?;
-        let residual = problem.residual(&standing, &standing.modelled);
-        let alone = standing.pairing.alone();
-        if standing.pairing.pairs != base.standing.pairing.pairs {
+        let paired = problem.paired_modes(&hypothesis)?;
+        let residual = problem.residual(&paired, &paired.modelled);
+        let alone = paired.pairing.alone();
+        if paired.pairing.pairs != base.paired.pairing.pairs {
             // Derivatives of the base are of other features: none at all, and errors so much larger.
             let linear = Linear { difference: residual, slopes: Vec::new() };
             let wide = problem.sizes.times(self.settings.wide);
-            let density = linear.ln_density(&standing.comparison, &wide)? + alone;
-            let partners = standing.pairing.pairs.len() > base.standing.pairing.pairs.len();
+            let density = linear.ln_density(&paired.comparison, &wide)? + alone;
+            let partners = paired.pairing.pairs.len() > base.paired.pairing.pairs.len();
             return Some(Start { density, candidate, hypothesis, apart: true, partners });
         }
-        let slopes = self.slopes(&hypothesis, &standing, &residual, base)?;
+        let slopes = self.slopes(&hypothesis, &paired, &residual, base)?;
         let linear = linear(&hypothesis, &self.local_priors(&hypothesis, base), &residual, &slopes);
-        let density = linear.ln_density(&standing.comparison, problem.sizes)? + alone;
+        let density = linear.ln_density(&paired.comparison, problem.sizes)? + alone;
         Some(Start { density, candidate, hypothesis, apart: false, partners: false })
     }
 
@@ -247,14 +247,14 @@ impl Searcher<'_> {
     fn slopes(
         &self,
         hypothesis: &Hypothesis,
-        standing: &Standing,
+        paired: &PairedModes,
         residual: &[f64],
         base: &ModalFit,
     ) -> Option<Vec<Vec<f64>>> {
         let known = base.slopes.len();
         let local = self.local_priors(hypothesis, base);
         let own = known..hypothesis.coordinates.len();
-        let own = self.problem.slopes(hypothesis, standing, &standing.modelled, residual, &local, own)?;
+        let own = self.problem.slopes(hypothesis, paired, &paired.modelled, residual, &local, own)?;
         Some(base.slopes.iter().cloned().chain(own).collect())
     }
 
@@ -262,13 +262,13 @@ impl Searcher<'_> {
     pub(super) fn nearby(
         &self,
         hypothesis: &Hypothesis,
-        standing: &Standing,
+        paired: &PairedModes,
         base: &ModalFit,
     ) -> Option<Vec<Vec<f64>>> {
-        if standing.pairing.pairs != base.standing.pairing.pairs {
+        if paired.pairing.pairs != base.paired.pairing.pairs {
             return None;
         }
-        let residual = self.problem.residual(standing, &standing.modelled);
-        self.slopes(hypothesis, standing, &residual, base)
+        let residual = self.problem.residual(paired, &paired.modelled);
+        self.slopes(hypothesis, paired, &residual, base)
     }
 }

@@ -68,9 +68,9 @@ fn a_fit_stands_where_it_would_come_to_rest_at_the_errors_that_it_asks_for() {
         let features = Features::of(&observation, &nominal, &Settings::default().modal).unwrap();
         let problem = features.problem(observation.work());
         let sharply = SetOut::Beside(features.known.scales.times(1e-3));
-        let standing = problem.standing(&nominal).unwrap();
+        let paired = problem.paired_modes(&nominal).unwrap();
         let fit =
-            problem.fitted_from(&nominal, standing, &priors(&nominal, &[]), (None, sharply, ANY)).unwrap();
+            problem.fitted_from(&nominal, paired, &priors(&nominal, &[]), (None, sharply, ANY)).unwrap();
         let (rest, _) = problem.at_sizes(&fit, &fit.evidence.sizes).unwrap();
         let moved =
             rest.coordinates.iter().zip(&fit.hypothesis.coordinates).map(|(rest, at)| (rest - at).abs());
@@ -238,10 +238,10 @@ fn a_dashpot_is_known_no_better_than_the_damping_of_the_modes_that_it_damps() {
     let problem = features.problem(observation.work());
     let own = truth.coordinates[nominal.coordinates.len()..].iter().map(|at| Prior { mean: *at, std: 1.4 });
     let priors: Vec<Prior> = priors(&nominal, &[]).into_iter().chain(own).collect();
-    let standing = problem.standing(&truth).unwrap();
-    let fit = problem.fitted_from(&truth, standing, &priors, (None, SetOut::Usual, ANY)).unwrap();
+    let paired = problem.paired_modes(&truth).unwrap();
+    let fit = problem.fitted_from(&truth, paired, &priors, (None, SetOut::Usual, ANY)).unwrap();
     let mut of_ratios = fit.clone();
-    of_ratios.standing.comparison = of_ratios.standing.comparison.with_ratios_alone();
+    of_ratios.paired.comparison = of_ratios.paired.comparison.with_ratios_alone();
     const ERROR: f64 = 0.05;
     let sizes = ErrorSizes { damping: ERROR, ..fit.evidence.sizes };
     // The logarithm of a ratio is its coordinate.
@@ -401,7 +401,7 @@ fn damping_is_off_by_no_more_than_was_stated_of_it_or_is_usual() {
     // Features that ask for errors of damping so many times the usual one of 10 %, whatever the parameters: of n modes that are all off by d, with a half-normal prior of scale s,
     // d² = τ²(1 + τ²/(n s²)).
     let ask = |fit: &mut ModalFit, times: f64| {
-        let n = fit.standing.pairing.pairs.len();
+        let n = fit.paired.pairing.pairs.len();
         let off = times * problem.sizes.damping * (1.0 + times.powi(2) / n as f64).sqrt();
         for mode in 0..n {
             fit.linear.difference[2 * mode + 1] = off;

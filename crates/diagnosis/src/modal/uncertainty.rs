@@ -11,7 +11,7 @@ use crate::fitter::Fitter;
 use crate::modal::fit::ModalFit;
 use crate::modal::judgement::ModalJudgement;
 use crate::modal::prior::{Prior, priors_among};
-use crate::modal::standing::{Iterate, Problem};
+use crate::modal::problem::{Iterate, Problem};
 use crate::rarity::rarity;
 use crate::{Hypothesis, Observation};
 use jointscope_findings::Estimate;
@@ -52,8 +52,8 @@ impl ModalJudgement {
         let problem = self.features.problem(fitter.observation.work());
         let fit = problem.unfitted(hypothesis, &priors_among(hypothesis, candidates)?)?;
         let errors_count =
-            fit.standing.pairing.alone() == 0.0 && !problem.is_exact(&fit, fitter.settings.modal.exact);
-        let sizes = || fit.linear.mean_sizes(&fit.standing.comparison, problem.prior(), &fit.evidence);
+            fit.paired.pairing.alone() == 0.0 && !problem.is_exact(&fit, fitter.settings.modal.exact);
+        let sizes = || fit.linear.mean_sizes(&fit.paired.comparison, problem.prior(), &fit.evidence);
         errors_count.then(|| fit.covariance_at(&sizes())).flatten()
     }
 }
@@ -68,21 +68,12 @@ fn has_moved_sensor(hypothesis: &Hypothesis, observation: &Observation) -> bool 
 impl Problem<'_> {
     /// A hypothesis as it is, with the sizes of error that it asks for.
     fn unfitted(&self, hypothesis: &Hypothesis, priors: &[Prior]) -> Option<ModalFit> {
-        let (point, standing) = self.at_start(hypothesis, self.standing(hypothesis)?);
-        let slopes = self.slopes_at(&point, &standing, priors)?;
-        let (linear, evidence) = self.evidence(&point, priors, &slopes, (&standing.comparison, None))?;
-        let ln = evidence.ln + standing.pairing.alone() - rarity(hypothesis);
+        let (point, paired) = self.at_start(hypothesis, self.paired_modes(hypothesis)?);
+        let slopes = self.slopes_at(&point, &paired, priors)?;
+        let (linear, evidence) = self.evidence(&point, priors, &slopes, (&paired.comparison, None))?;
+        let ln = evidence.ln + paired.pairing.alone() - rarity(hypothesis);
         let Iterate { hypothesis, residual, .. } = point;
-        Some(ModalFit {
-            hypothesis,
-            priors: priors.to_vec(),
-            standing,
-            linear,
-            evidence,
-            slopes,
-            residual,
-            ln,
-        })
+        Some(ModalFit { hypothesis, priors: priors.to_vec(), paired, linear, evidence, slopes, residual, ln })
     }
 }
 

@@ -1,4 +1,4 @@
-//! Where a hypothesis stands beside the recorded modes: its own modes, paired with these, and how they move with its coordinates.
+//! The recorded modes as a problem of inference: those of a hypothesis, paired with them, and how they move with its coordinates.
 
 use crate::Hypothesis;
 use crate::modal::prior::Prior;
@@ -22,15 +22,15 @@ pub(crate) struct Problem<'a> {
     pub work: &'a Work,
 }
 
-/// A hypothesis where it stands: its modes, paired with the recording's.
+/// The modes of a hypothesis, paired with the recorded ones, and what both have in common.
 #[derive(Debug, Clone)]
-pub(crate) struct Standing {
+pub(crate) struct PairedModes {
     pub modelled: ModelledModes,
     pub pairing: Pairing,
     pub comparison: Comparison,
 }
 
-/// Where a fit stands on its way.
+/// One iterate of a fit: the hypothesis, its modes and what they leave.
 #[derive(Clone)]
 pub(super) struct Iterate {
     pub hypothesis: Hypothesis,
@@ -44,21 +44,22 @@ impl Problem<'_> {
         SizePrior { scales: *self.sizes, stated: self.stated }
     }
 
-    /// Where a hypothesis stands, its poles found anew.
-    pub(crate) fn standing(&self, hypothesis: &Hypothesis) -> Option<Standing> {
+    /// The modes of a hypothesis, its poles found anew, paired as is likeliest.
+    pub(crate) fn paired_modes(&self, hypothesis: &Hypothesis) -> Option<PairedModes> {
         let fixture = hypothesis.to_fixture().ok()?;
         self.work.count(SEARCHED_POLES * self.recorded.frfs());
         let modelled = ModelledModes::of(&fixture, self.recorded)?;
         let pairing = Pairing::of(self.recorded, &modelled);
-        self.paired((hypothesis, &fixture), modelled, pairing)
+        self.paired_as((hypothesis, &fixture), modelled, pairing)
     }
 
-    pub(super) fn paired(
+    /// The modes of a hypothesis in a given pairing.
+    pub(super) fn paired_as(
         &self,
         (hypothesis, fixture): (&Hypothesis, &Fixture),
         modelled: ModelledModes,
         pairing: Pairing,
-    ) -> Option<Standing> {
+    ) -> Option<PairedModes> {
         let shapes = |fixture: &Fixture| Shapes::of(fixture, self.recorded, &modelled.poles());
         let own = shapes(fixture)?;
         let mut comparison = Comparison::new(self.recorded, &pairing, &modelled, &own);
@@ -72,7 +73,7 @@ impl Problem<'_> {
         if let Some(springs) = springs {
             comparison = comparison.with_damping_distributed_otherwise(self.recorded, &pairing, &springs);
         }
-        Some(Standing { modelled, pairing, comparison })
+        Some(PairedModes { modelled, pairing, comparison })
     }
 
     /// The modes of a hypothesis, followed from those of another one near it.
@@ -83,15 +84,15 @@ impl Problem<'_> {
     }
 
     /// Recorded less modelled features, of the modes that are paired.
-    pub(crate) fn residual(&self, standing: &Standing, modelled: &ModelledModes) -> Vec<f64> {
-        standing.comparison.residual(self.recorded, self.features, modelled, &standing.pairing)
+    pub(crate) fn residual(&self, paired: &PairedModes, modelled: &ModelledModes) -> Vec<f64> {
+        paired.comparison.residual(self.recorded, self.features, modelled, &paired.pairing)
     }
 
     /// Derivatives of the model's features by coordinates `of`, for a step of one.
     pub(crate) fn slopes(
         &self,
         hypothesis: &Hypothesis,
-        standing: &Standing,
+        paired: &PairedModes,
         modelled: &ModelledModes,
         residual: &[f64],
         priors: &[Prior],
@@ -109,7 +110,7 @@ impl Problem<'_> {
             // A beam that ends at a support cannot become shorter: then longer.
             let moved = |step: f64| Some((step, beside(&hypothesis.moved(index, step))?));
             let (step, moved) = moved(inward).or_else(|| moved(-inward))?;
-            let there = self.residual(standing, &moved);
+            let there = self.residual(paired, &moved);
             Some(residual.iter().zip(&there).map(|(at, there)| (at - there) / step).collect())
         })
         .collect()
