@@ -54,16 +54,16 @@ impl Problem<'_> {
         let mut slopes = slopes.to_vec();
         stopped.iter().for_each(|&index| slopes[index].fill(0.0));
         let mut held = of(linear(&point.hypothesis, priors, &point.residual, &slopes))?;
-        let pull = |&index: &usize| {
+        let cost = |&index: &usize| {
             let prior = priors[index];
             if prior.std == 0.0 {
                 return 0.0;
             }
             0.5 * ((point.hypothesis.coordinates[index] - prior.mean) / prior.std).powi(2)
         };
-        let pulls: f64 = stopped.iter().map(pull).sum();
-        held.1.ln -= pulls;
-        held.1.ln_at_start -= pulls;
+        let costs: f64 = stopped.iter().map(cost).sum();
+        held.1.ln -= costs;
+        held.1.ln_at_start -= costs;
         Some(if held.1.ln < free.1.ln { held } else { free })
     }
 }

@@ -47,10 +47,10 @@ pub(super) const ANY: f64 = f64::NEG_INFINITY;
 
 impl ModalFit {
     /// The largest departure of the fixture's quantities, in standard deviations.
-    pub(crate) fn largest_pull(&self) -> f64 {
-        let pulls = self.hypothesis.coordinates.iter().zip(&self.priors);
-        let pulls = pulls.take(self.hypothesis.tolerances().len());
-        pulls.map(|(at, prior)| ((at - prior.mean) / prior.std).abs()).fold(0.0, f64::max)
+    pub(crate) fn largest_departure(&self) -> f64 {
+        let departures = self.hypothesis.coordinates.iter().zip(&self.priors);
+        let departures = departures.take(self.hypothesis.tolerances().len());
+        departures.map(|(at, prior)| ((at - prior.mean) / prior.std).abs()).fold(0.0, f64::max)
     }
 
     /// Whether the features' misfit, errors of the model at their sizes and departures counted, is no larger than chance makes it.

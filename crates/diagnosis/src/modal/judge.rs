@@ -110,8 +110,11 @@ impl Judge<'_> {
     /// itself only, and what is more probable than something adequate is no worse for it.
     fn holds_with_usual_errors(&self) -> bool {
         let (none, best) = (&self.search.none, &self.search.best);
-        let (largest, pull) = self.searcher.settings.adequate;
-        if best.names.is_empty() || best.fit.largest_pull() > pull || !self.searcher.is_adequate(none) {
+        let (largest, departure) = self.searcher.settings.adequate;
+        if best.names.is_empty()
+            || best.fit.largest_departure() > departure
+            || !self.searcher.is_adequate(none)
+        {
             return false;
         }
         let usual = self.searcher.problem.no_larger(&best.fit, largest);
@@ -181,13 +184,14 @@ impl Judge<'_> {
             true => self.made_up_for_by_signals(best),
             false => problem.relative_sizes_as_stated(best),
         };
-        let strain: f64 = sizes.iter().map(|s| 0.5 * (s * s - 1.0).max(0.0)).sum();
-        let pull = 0.5 * (best.largest_pull().powi(2) - self.searcher.settings.adequate.1.powi(2)).max(0.0);
+        let errors: f64 = sizes.iter().map(|s| 0.5 * (s * s - 1.0).max(0.0)).sum();
+        let departures =
+            0.5 * (best.largest_departure().powi(2) - self.searcher.settings.adequate.1.powi(2)).max(0.0);
         // What no poles explain in the recording itself is nothing that a name could be held against.
-        let untold = 0.5 * self.searcher.problem.recorded.chi2_per_dof.max(1.0).ln();
+        let unmodelled = 0.5 * self.searcher.problem.recorded.chi2_per_dof.max(1.0).ln();
         // Several effects together imitate much, as among lines.
         let statements = self.searcher.statements(&self.search.best.names).len();
         let company = self.searcher.settings.company * statements.saturating_sub(1) as f64;
-        (usual + company + strain + pull + untold).min(most).exp()
+        (usual + company + errors + departures + unmodelled).min(most).exp()
     }
 }

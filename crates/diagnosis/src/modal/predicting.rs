@@ -30,7 +30,7 @@ impl ModalJudgement {
         let models = self.predicting(fitter.observation.work(), settings);
         let search = self.search_on(fitter.observation, within, &models);
         let search = self.no_farther(fitter.observation, search);
-        let departs = |fit: &ModalFit| fit.largest_pull() > settings.adequate.1;
+        let departs = |fit: &ModalFit| fit.largest_departure() > settings.adequate.1;
         let bought = departs(&self.search.none) && !departs(&self.search.best.fit);
         let misses = search.repaired.chi2 >= settings.part * search.refitted.chi2 && !bought;
         let is_none = match self.verdict {

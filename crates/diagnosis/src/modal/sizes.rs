@@ -107,7 +107,7 @@ impl Problem<'_> {
     /// Whether what a fit needs of errors, as multiples of what is usual, and of departures, in standard deviations, is no more than `adequate`, and what these
     /// leave of the features is chance: of a mass line that is off by a dozen times what is usual, errors of nothing are as probable as ones that large.
     pub(crate) fn is_adequate(&self, fit: &ModalFit, adequate: (f64, f64)) -> bool {
-        fit.largest_pull() <= adequate.1
+        fit.largest_departure() <= adequate.1
             && (self.largest_size(fit) <= adequate.0 || self.is_as_probable_with(adequate.0, fit))
             && fit.leaves_chance()
     }
