@@ -238,7 +238,7 @@ impl Diagnosis {
         };
         let left = features.recorded.chi2_per_dof;
         let share = left.sqrt() * self.observation.relative_noise();
-        if left <= settings.modal.free_fit || share > settings.modal.beside_modes {
+        if left <= settings.modal.free_fit_limit || share > settings.modal.beside_modes {
             return Ok(self);
         }
         let other =

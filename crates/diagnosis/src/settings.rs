@@ -223,7 +223,7 @@ pub struct ModalSettings {
     pub part: f64,
     /// Share of what the fixture by itself leaves of the lines, squared, that an explanation leaves at the most where modes do not tell the whole recording. Where they do, 43 explanations of
     /// solids left 0.4 % in the median, and three more than this.
-    pub untold: f64,
+    pub most_left_where_incomplete: f64,
     /// Times by which lines may miss more with what explains the modes than without, squared for χ². Of 86 explanations of solids one missed 1.5 times as much, and was right; a hammer that struck
     /// beside the sensor at its point was taken for gains with which lines missed 94 times as much.
     pub spoils: f64,
@@ -231,7 +231,7 @@ pub struct ModalSettings {
     /// solids.
     pub exact: f64,
     /// χ² per degree of freedom of a free fit of modes from which it does not reach the noise.
-    pub free_fit: f64,
+    pub free_fit_limit: f64,
     /// χ² per degree of freedom of a free fit from which no poles explain the recording: names say nothing then.
     pub hopeless: f64,
     /// Share of the FRFs up to which what no poles explain in a recording counts as its noise where nothing else explains it: leakage, filters and strikes beside the point leave some
@@ -292,10 +292,10 @@ impl Default for ModalSettings {
             listed: 8.0,
             adequate: (2.0, 4.0),
             part: 0.5,
-            untold: 0.1,
+            most_left_where_incomplete: 0.1,
             spoils: 2.0,
             exact: 5.0,
-            free_fit: 1.3,
+            free_fit_limit: 1.3,
             hopeless: 100.0,
             beside_modes: 0.02,
             unlisted: (-3.5, -0.7),

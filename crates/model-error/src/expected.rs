@@ -37,7 +37,7 @@ impl RecordedModes {
     /// terms as the recording's free fit took, that many are no sign of anything else.
     pub fn beside(mut self, fixture: &Fixture) -> Self {
         let Some(modelled) = ModelledModes::of(fixture, &self) else { return self };
-        self.strained &= !modelled.needs_last_term();
+        self.excess_residual_terms &= !modelled.needs_last_term();
         self.low = self.shared_by_low_modes(fixture, &modelled.modes).unwrap_or_default();
         self
     }

@@ -273,7 +273,7 @@ impl FreeFit {
             residual_scales,
             low: Vec::new(),
             covariance,
-            strained: self.terms >= TERMS.1,
+            excess_residual_terms: self.terms >= TERMS.1,
             outline: Outline::of(recording, (&self.poles, self.inside), self.terms, mass_line)?,
             surroundings: (self.poles[modes..].to_vec(), self.terms),
             modes: recorded,

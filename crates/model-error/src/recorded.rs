@@ -43,7 +43,7 @@ pub struct RecordedModes {
     /// Covariance of the [features](RecordedModes::features), row-major.
     pub(crate) covariance: Vec<f64>,
     /// Whether residual terms were taken that neither noise nor the model asks for.
-    pub(crate) strained: bool,
+    pub(crate) excess_residual_terms: bool,
     pub(crate) outline: Outline,
     /// Poles outside the band, and number of residual terms of each FRF.
     pub(crate) surroundings: (Vec<Pole>, usize),
@@ -57,8 +57,8 @@ impl RecordedModes {
     }
 
     /// Whether the free fit took all the residual terms it may, and the model beside it needs fewer: then something smooth that is no mode is in the FRFs.
-    pub fn is_strained(&self) -> bool {
-        self.strained
+    pub fn has_excess_residual_terms(&self) -> bool {
+        self.excess_residual_terms
     }
 
     /// Number of FRFs.

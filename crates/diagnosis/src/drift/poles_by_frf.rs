@@ -46,7 +46,7 @@ pub(super) fn poles_by_frf(
     let of = |reference: &Channel| {
         let part = observation.reduced(|_| true, |pair| pair.reference == *reference)?;
         // Where modes do not tell all there is in the FRFs, what they leave moves them too.
-        let modes = recorded(&part, nominal).filter(|m| m.chi2_per_dof < settings.free_fit)?;
+        let modes = recorded(&part, nominal).filter(|m| m.chi2_per_dof < settings.free_fit_limit)?;
         Some(ReferenceModes { part, modes })
     };
     let struck: Vec<Option<ReferenceModes>> = each(references, of);

@@ -35,7 +35,7 @@ impl ModalJudgement {
         let alone = self.search.best.fit.paired.pairing.alone();
         // Records taken one after another, their noise told by scatter alone: an outlier among their gains passes for an error of all gains.
         let unsure = self.is_unexplained() && fitter.observation.has_scatter_for_noise();
-        let has_poles = self.free_fit <= fitter.settings.modal.hopeless;
+        let has_poles = self.free_fit_chi2_per_dof <= fitter.settings.modal.hopeless;
         // Errors of gains may be of any size among modes, one channel's gain for instance, which then is held against itself.
         let gain = self.search.best.fit.has_gains_beyond(&self.features.known.scales);
         let is_doubted = || alone != 0.0 || unsure || gain || self.is_beyond_errors(fitter);
@@ -59,8 +59,9 @@ impl ModalJudgement {
 
     /// Whether modes tell a part of the recording only, but not where no poles explain it at all.
     pub(crate) fn is_incomplete_but_usable(&self, fitter: &Fitter) -> bool {
-        let ModalSettings { free_fit, hopeless, .. } = fitter.settings.modal;
-        (self.free_fit > free_fit || self.strained) && self.free_fit <= hopeless
+        let ModalSettings { free_fit_limit, hopeless, .. } = fitter.settings.modal;
+        (self.free_fit_chi2_per_dof > free_fit_limit || self.excess_residual_terms)
+            && self.free_fit_chi2_per_dof <= hopeless
     }
 
     /// Whether a free fit that needed all it may for the noise, as what relaxes or damps heavily makes it need, leaves no doubt of the names, and these explain the modes.
@@ -70,7 +71,7 @@ impl ModalJudgement {
 
     /// Whether modes are far less probable without any of the names, at least in part explained by them, and by no others nearly as well.
     pub(crate) fn has_no_rival(&self, fitter: &Fitter) -> bool {
-        let ModalSettings { free_fit, no_rival_within, .. } = fitter.settings.modal;
+        let ModalSettings { free_fit_limit, no_rival_within, .. } = fitter.settings.modal;
         let best = &self.search.best;
         let alone = |index: usize| {
             let others = self.search.alternatives[index]
@@ -78,7 +79,9 @@ impl ModalJudgement {
                 .filter(|other| other.names.last() != Some(&best.names[index]));
             others.count() == 0 && best.fit.ln - self.search.without[index] > no_rival_within
         };
-        !best.names.is_empty() && self.free_fit <= free_fit && (0..best.names.len()).all(alone)
+        !best.names.is_empty()
+            && self.free_fit_chi2_per_dof <= free_fit_limit
+            && (0..best.names.len()).all(alone)
     }
 
     /// Whether errors of the usual size explain the modes of no hypothesis.

@@ -63,7 +63,7 @@ impl Features {
 
     /// Whether the modes tell a part of the recording only.
     pub(crate) fn is_incomplete(&self, settings: &ModalSettings) -> bool {
-        self.recorded.chi2_per_dof > settings.free_fit || self.recorded.is_strained()
+        self.recorded.chi2_per_dof > settings.free_fit_limit || self.recorded.has_excess_residual_terms()
     }
 }
 

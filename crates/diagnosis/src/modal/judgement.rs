@@ -30,9 +30,9 @@ pub(crate) struct ModalJudgement {
     /// By effect of the best hypothesis: what is known of it along its body.
     pub places: Vec<Places>,
     /// χ² per degree of freedom of the free fit that the recorded modes are from.
-    pub free_fit: f64,
-    /// Whether that fit took all the residual terms it may.
-    pub strained: bool,
+    pub free_fit_chi2_per_dof: f64,
+    /// Whether that fit took all the residual terms it may, and the model needs fewer.
+    pub excess_residual_terms: bool,
     /// Error of the refitted and of the repaired model.
     pub errors: [ModelError; 2],
     /// Whether the fixture states how well the gains of its records are known.

@@ -41,7 +41,7 @@ impl ModalJudgement {
         if is_none {
             return (self.withdrawn(), Search { repaired: search.refitted.clone(), ..search });
         }
-        if self.verdict == Verdict::Explained && self.leaves_untold(fitter, &search) {
+        if self.verdict == Verdict::Explained && self.leaves_much_where_incomplete(fitter, &search) {
             return (self.doubted(), search);
         }
         (self.clone(), search)
@@ -57,11 +57,11 @@ impl ModalJudgement {
 
     /// Whether lines miss much of a recording that modes do not tell: what a free fit took residual terms for passes for errors in what lies outside the band, and what it took a mode for
     /// is held against no name. What a calibrated model is off by in both states is neither.
-    fn leaves_untold(&self, fitter: &Fitter, search: &Search) -> bool {
-        let ModalSettings { untold, slight, .. } = fitter.settings.modal;
+    fn leaves_much_where_incomplete(&self, fitter: &Fitter, search: &Search) -> bool {
+        let ModalSettings { most_left_where_incomplete: most, slight, .. } = fitter.settings.modal;
         let Search { refitted, repaired, .. } = search;
         let leaves =
-            repaired.chi2_per_dof(fitter.observation) > slight && repaired.chi2 > untold * refitted.chi2;
+            repaired.chi2_per_dof(fitter.observation) > slight && repaired.chi2 > most * refitted.chi2;
         leaves && !self.since_baseline && (self.is_incomplete_but_usable(fitter) || self.has_no_peak())
     }
 

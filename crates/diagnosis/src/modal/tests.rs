@@ -189,17 +189,20 @@ fn what_leaves_much_of_lines_that_modes_do_not_tell_is_a_part_of_it_and_what_spo
     judged_beside_lump(|fitter, within, mut judged, lump| {
         judged.verdict = Verdict::Explained;
         // A tenth of the mass is a hundredth of the squares, more than half of it more than a tenth.
-        for (mass, strained, since_baseline, verdict) in [
+        for (mass, excess_residual_terms, since_baseline, verdict) in [
             (0.09, true, false, Verdict::PartlyExplained),
             (0.18, true, false, Verdict::Explained),
             (0.09, false, false, Verdict::Explained),
             (0.09, true, true, Verdict::Explained),
             (-0.6, false, false, Verdict::Unexplained),
         ] {
-            (judged.strained, judged.since_baseline, judged.stated[1]) =
-                (strained, since_baseline, lump(mass));
+            (judged.excess_residual_terms, judged.since_baseline, judged.stated[1]) =
+                (excess_residual_terms, since_baseline, lump(mass));
             let (predicted, _) = judged.predicted(fitter, within);
-            assert_eq!(predicted.verdict, verdict, "{mass} kg of 0.2 kg, {strained}, {since_baseline}");
+            assert_eq!(
+                predicted.verdict, verdict,
+                "{mass} kg of 0.2 kg, {excess_residual_terms}, {since_baseline}"
+            );
         }
     });
 }

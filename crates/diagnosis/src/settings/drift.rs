@@ -5,7 +5,7 @@ pub(crate) mod poles {
     /// Farthest that a mode may have moved between references, in ln ω.
     pub(crate) const MOST_MOVED: f64 = 0.05;
     /// Factor by which the damping ratio of the same mode may differ, at most: a pole that only follows what a fit leaves has any damping. Without it, and
-    /// without the limit on what a free fit may leave (`free_fit` of `ModalSettings`), drift of 2 % was told of a real beam that does not drift by more than parts in 100,000.
+    /// without the limit on what a free fit may leave (`free_fit_limit` of `ModalSettings`), drift of 2 % was told of a real beam that does not drift by more than parts in 100,000.
     pub(crate) const MOST_DAMPING_FACTOR: f64 = 2.0;
     /// A natural frequency counts where it is known to this share of its half-width.
     pub(crate) const KNOWN_SHARE: f64 = 0.3;
