@@ -77,7 +77,7 @@ impl Judge<'_> {
 
     fn verdict(&self) -> Verdict {
         let (none, best) = (&self.search.none, &self.search.best);
-        let adequate = self.searcher.is_adequate(&best.fit) || self.holds_with_usual_errors();
+        let adequate = self.searcher.is_adequate(&best.fit) || self.outweighs_adequate_fixture();
         // Of a recording that no poles explain, names say nothing, but for what has changed since another one like it.
         let hopeless = self.searcher.problem.recorded.chi2_per_dof > self.searcher.settings.hopeless;
         if hopeless && !self.searcher.calibrated && !(best.names.is_empty() && adequate) {
@@ -106,9 +106,10 @@ impl Judge<'_> {
         }
     }
 
-    /// Whether a name that asks for errors a little larger than usual gains as much as it must over a fixture which does not, with no larger ones: a size is known to some tenths of
-    /// itself only, and what is more probable than something adequate is no worse for it.
-    fn holds_with_usual_errors(&self) -> bool {
+    /// Whether a name that asks for errors a little larger than usual gains as much as it must over a fixture that is adequate without it, even with its errors held at what is usual: a size
+    /// is known to some tenths of itself only, and what is more probable than something adequate is no worse for it. Other than `is_as_probable_with_errors_within`, by which a fit is adequate
+    /// by itself, it compares two fits, and the density of the features alone pays for the errors that are held.
+    fn outweighs_adequate_fixture(&self) -> bool {
         let (none, best) = (&self.search.none, &self.search.best);
         let (largest, departure) = self.searcher.settings.adequate;
         if best.names.is_empty()

@@ -108,12 +108,15 @@ impl Problem<'_> {
     /// leave of the features is chance: of a mass line that is off by a dozen times what is usual, errors of nothing are as probable as ones that large.
     pub(crate) fn is_adequate(&self, fit: &ModalFit, adequate: (f64, f64)) -> bool {
         fit.largest_departure() <= adequate.1
-            && (self.largest_size(fit) <= adequate.0 || self.is_as_probable_with(adequate.0, fit))
+            && (self.largest_size(fit) <= adequate.0
+                || self.is_as_probable_with_errors_within(adequate.0, fit))
             && fit.leaves_chance()
     }
 
-    /// Whether errors of so many times what is usual at the most make a fit no less probable: a size is known to some tenths of itself only, the less the fewer modes there are.
-    fn is_as_probable_with(&self, most: f64, fit: &ModalFit) -> bool {
+    /// Whether a fit is as probable with no error larger than so many times what is usual: ln of the evidence, the sizes' prior included, loses next to nothing by that. It is asked of one
+    /// fit by itself: a size is known to some tenths of itself only, the less the fewer modes there are. What may lose more, but less than it gained over a fixture that is adequate, is asked by
+    /// `outweighs_adequate_fixture` of `judge.rs`.
+    fn is_as_probable_with_errors_within(&self, most: f64, fit: &ModalFit) -> bool {
         let at = |sizes: &ErrorSizes| fit.linear.ln_evidence_at(&fit.paired.comparison, self.prior(), sizes);
         let both = at(&fit.evidence.sizes).zip(at(&self.no_larger(fit, most)));
         both.is_some_and(|(asked, held)| asked - held < AS_PROBABLE)
