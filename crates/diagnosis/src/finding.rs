@@ -7,11 +7,11 @@ use jointscope_fixture::{Effect, Motion};
 use serde::Serialize;
 
 /// A piece of physics that the FRFs need.
-pub type Finding = jointscope_findings::Finding<Evidence>;
+pub type Finding = jointscope_findings::Finding<FrfEvidence>;
 
 /// What FRFs tell of a finding beyond its name, size and probability.
 #[derive(Debug, Clone, Serialize)]
-pub struct Evidence {
+pub struct FrfEvidence {
     /// What χ² and priors lose without it.
     #[serde(rename = "gain_chi2")]
     pub gain: f64,
@@ -23,7 +23,7 @@ pub struct Evidence {
     pub measured: Option<Location>,
 }
 
-impl Evidence {
+impl FrfEvidence {
     /// The other places of the finding that are likely enough to be reckoned with.
     pub fn likely_places(&self) -> impl Iterator<Item = &Elsewhere> {
         self.elsewhere.iter().filter(|place| place.share >= LIKELY_SHARE)

@@ -87,7 +87,7 @@ pub use departures::Departure;
 pub use diagnosis::Diagnosis;
 pub use drift::{ModeDrift, ReferenceChange, TestDrift};
 pub use facts::{EndErrors, FrfMisfit, Phase, Trend, Variation};
-pub use finding::{Elsewhere, Evidence, Finding, Tried};
+pub use finding::{Elsewhere, Finding, FrfEvidence, Tried};
 pub use fit::Fit;
 pub use hypothesis::Hypothesis;
 pub use idle::{as_known, with_idle_points_exact};

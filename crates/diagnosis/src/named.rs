@@ -5,7 +5,7 @@ use crate::departures::has_departed;
 use crate::elsewhere::elsewhere;
 use crate::estimates::estimates;
 use crate::evidence::explained;
-use crate::finding::{Evidence, Finding};
+use crate::finding::{Finding, FrfEvidence};
 use crate::fitter::Fitter;
 use crate::location::measured;
 use crate::search::Search;
@@ -75,7 +75,7 @@ pub(crate) fn findings(fitter: &Fitter, search: &mut Search) -> Vec<Finding> {
             estimates: estimates(&repaired.hypothesis, index, &effect, covariance.as_ref(), widening),
             probability: all_names[index].iter().find(|a| own(a)).map_or(0.0, |a| a.probability),
             alternatives: all_names[index].iter().filter(|a| !own(a)).filter_map(alternative).collect(),
-            evidence: Evidence {
+            evidence: FrfEvidence {
                 gain: without.map_or(0.0, |fit| fit.objective - repaired.objective),
                 elsewhere: elsewhere(fitter, search, index),
                 measured: measured(*fitter, repaired, index),

@@ -23,7 +23,7 @@ pub struct Linear {
 
 /// The most probable sizes of a model's error, and the logarithm of the evidence there.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Evidence {
+pub struct ModelEvidence {
     /// ln p(features), nats, the sizes' prior included, without its normalisation.
     pub ln: f64,
     /// The most probable sizes, [`ErrorSizes::LEAST`] of the prior's at least.
@@ -59,7 +59,7 @@ impl Linear {
         &self,
         comparison: &Comparison,
         prior: impl Into<SizePrior>,
-        best: &Evidence,
+        best: &ModelEvidence,
     ) -> ErrorSizes {
         let SizePrior { scales, stated } = prior.into();
         let (prior, at) = (scales.to_array(), best.sizes.to_array());
@@ -90,7 +90,7 @@ impl Linear {
         &self,
         comparison: &Comparison,
         prior: impl Into<SizePrior>,
-        best: &Evidence,
+        best: &ModelEvidence,
         kind: usize,
     ) -> [f64; 2] {
         let SizePrior { scales, stated } = prior.into();
@@ -137,7 +137,7 @@ impl Linear {
         comparison: &Comparison,
         prior: impl Into<SizePrior>,
         start: Option<&ErrorSizes>,
-    ) -> Option<Evidence> {
+    ) -> Option<ModelEvidence> {
         let prior = prior.into();
         let mut density = self.density(comparison);
         let scales = prior.scales.to_array();
@@ -152,6 +152,6 @@ impl Linear {
         }
         search.climb();
         let sizes = ErrorSizes::from_array(search.sizes);
-        search.ln.is_finite().then_some(Evidence { ln: search.ln, sizes, ln_at_start })
+        search.ln.is_finite().then_some(ModelEvidence { ln: search.ln, sizes, ln_at_start })
     }
 }

@@ -13,7 +13,7 @@
 //! 3. **Pairing.** [`Pairing::of`] tells which mode of the model is which of the recording, by frequency and shape, and what modes without a partner cost.
 //! 4. **Error.** [`ErrorSizes`] are relative standard deviations by kind: natural frequency, damping ratio, shape (in phase and in quadrature), mass line, upper residual.
 //!    [`Comparison`] makes the covariance S = noise + Σ size²·kind of them, with the model's [`Shapes`].
-//! 5. **Evidence.** [`Linear::evidence`] gives the evidence of a model that is linear in its parameters, with the sizes at their most probable ([`Evidence`]);
+//! 5. **Evidence.** [`Linear::evidence`] gives the evidence of a model that is linear in its parameters, with the sizes at their most probable ([`ModelEvidence`]);
 //!    [`Linear::mean_sizes`] their root mean squares.
 //!
 //! Where a model is exact, features differ from the recording's by the stated deviations: over 100 recordings with noise the mean square of the normalised differences is 1 within
@@ -83,7 +83,7 @@ mod structural;
 
 pub use basis::Pole;
 pub use errors::{Comparison, DAMPING, ErrorSizes, FREQUENCY, GAIN, KINDS, SHAPE, SizePrior, UPPER_RESIDUAL};
-pub use evidence::{Evidence, Linear};
+pub use evidence::{Linear, ModelEvidence};
 pub use expected::Expected;
 pub use matching::Pairing;
 pub use modelled::ModelledModes;

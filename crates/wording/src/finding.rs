@@ -145,7 +145,7 @@ impl Says for LevelFinding {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use jointscope_diagnosis::Evidence;
+    use jointscope_diagnosis::FrfEvidence;
     use jointscope_fixture::{Effect, EffectKind, Place};
 
     fn finding(kind: EffectKind, place: Place, dof: Option<Dof>, values: &[f64], share: f64) -> FrfFinding {
@@ -161,7 +161,7 @@ mod tests {
             effect,
             probability: 0.9,
             alternatives: Vec::new(),
-            evidence: Evidence { gain: 100.0, elsewhere: Vec::new(), measured: None },
+            evidence: FrfEvidence { gain: 100.0, elsewhere: Vec::new(), measured: None },
         }
     }
 

@@ -228,7 +228,7 @@ fn short(share: f64) -> String {
 mod tests {
     use super::*;
     use crate::Says;
-    use jointscope_diagnosis::{Departure, DiagnosisOptions, ErrorIntervals, Evidence, Finding};
+    use jointscope_diagnosis::{Departure, DiagnosisOptions, ErrorIntervals, Finding, FrfEvidence};
     use jointscope_findings::Estimate;
     use jointscope_fixture::{Effect, EffectKind, Fixture, Place, StatedError};
     use jointscope_lumped::{Instrument, synthesize};
@@ -270,7 +270,7 @@ mod tests {
                 .collect(),
             probability,
             alternatives: Vec::new(),
-            evidence: Evidence { gain: 70.0, elsewhere: Vec::new(), measured: None },
+            evidence: FrfEvidence { gain: 70.0, elsewhere: Vec::new(), measured: None },
         }
     }
 

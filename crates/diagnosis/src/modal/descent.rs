@@ -5,7 +5,7 @@ use crate::modal::problem::{Iterate, PairedModes, Problem};
 use crate::settings::modal::descent::{CONVERGENCE, CURVED_VALLEY, DAMPING, DERIVATIVES, MOST_STEPS, REUSE};
 use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend, dot};
 use jointscope_linalg::Cholesky;
-use jointscope_model_error::{ErrorSizes, Evidence, Linear};
+use jointscope_model_error::{ErrorSizes, Linear, ModelEvidence};
 
 /// How parameters are fitted with at most so many sets of derivatives, the first taken at the start.
 pub(super) fn settings(derivatives: usize) -> Settings {
@@ -27,7 +27,7 @@ pub(super) struct Rest {
     pub point: Iterate,
     pub derivatives: Vec<Vec<f64>>,
     pub linear: Linear,
-    pub evidence: Evidence,
+    pub evidence: ModelEvidence,
     /// Decrease of χ² that one more step promises at the sizes that were fitted with, and at those asked for.
     pub promised_there: f64,
     pub promised: f64,

@@ -3,7 +3,7 @@
 use crate::Hypothesis;
 use crate::modal::prior::Prior;
 use crate::modal::problem::{Iterate, Problem};
-use jointscope_model_error::{Comparison, ErrorSizes, Evidence, Linear};
+use jointscope_model_error::{Comparison, ErrorSizes, Linear, ModelEvidence};
 
 impl Problem<'_> {
     /// The linear model at a point and its evidence. Whether an effect's spring is damped beyond the fixture's damping nobody knows beforehand: it is as probable that
@@ -14,7 +14,7 @@ impl Problem<'_> {
         priors: &[Prior],
         slopes: &[Vec<f64>],
         at: (&Comparison, Option<&ErrorSizes>),
-    ) -> Option<(Linear, Evidence)> {
+    ) -> Option<(Linear, ModelEvidence)> {
         let (linear, damped) = self.evidence_within_bounds(point, priors, slopes, at)?;
         let dashpots = point.hypothesis.dashpots();
         if dashpots.is_empty() {
@@ -25,7 +25,7 @@ impl Problem<'_> {
         let (_, elastic) = self.evidence_within_bounds(point, &elastic, slopes, at)?;
         let mean = |a: f64, b: f64| a.max(b) + (0.5 * (1.0 + (-(a - b).abs()).exp())).ln();
         let likelier = if elastic.ln > damped.ln { elastic } else { damped };
-        let evidence = Evidence {
+        let evidence = ModelEvidence {
             ln: mean(damped.ln, elastic.ln),
             ln_at_start: mean(damped.ln_at_start, elastic.ln_at_start),
             sizes: likelier.sizes,
@@ -41,7 +41,7 @@ impl Problem<'_> {
         priors: &[Prior],
         slopes: &[Vec<f64>],
         (comparison, known): (&Comparison, Option<&ErrorSizes>),
-    ) -> Option<(Linear, Evidence)> {
+    ) -> Option<(Linear, ModelEvidence)> {
         let of = |linear: Linear| {
             let evidence = linear.evidence(comparison, self.prior(), known)?;
             Some((linear, evidence))

@@ -12,7 +12,7 @@ use crate::settings::modal::fit::{
 };
 use jointscope_inference::{Covariance, dot};
 use jointscope_linalg::Cholesky;
-use jointscope_model_error::{ErrorSizes, Evidence, Linear, Pairing};
+use jointscope_model_error::{ErrorSizes, Linear, ModelEvidence, Pairing};
 
 /// A hypothesis at its most probable parameters.
 #[derive(Debug, Clone)]
@@ -21,7 +21,7 @@ pub(crate) struct ModalFit {
     pub priors: Vec<Prior>,
     pub paired: PairedModes,
     pub linear: Linear,
-    pub evidence: Evidence,
+    pub evidence: ModelEvidence,
     /// Derivatives of the model's features by each coordinate, for a step of one.
     pub slopes: Vec<Vec<f64>>,
     /// Recorded less modelled features.
@@ -191,7 +191,7 @@ impl Problem<'_> {
             let last = round + 1 == MOST_ROUNDS;
             let evidence = match settled && end.promised < STANDS_STILL {
                 true => Some(end.evidence),
-                false => (end.promised_there < STANDS_STILL).then_some(Evidence {
+                false => (end.promised_there < STANDS_STILL).then_some(ModelEvidence {
                     ln: end.evidence.ln_at_start,
                     sizes,
                     ..end.evidence

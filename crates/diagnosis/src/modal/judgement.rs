@@ -2,7 +2,7 @@
 
 use crate::candidate::Candidate;
 use crate::estimates::estimates;
-use crate::finding::{Evidence, Finding, Tried};
+use crate::finding::{Finding, FrfEvidence, Tried};
 use crate::fit::Fit;
 use crate::modal::features::Features;
 use crate::modal::known::Known;
@@ -167,7 +167,7 @@ impl ModalJudgement {
                 estimates: along.unwrap_or_else(linear),
                 probability: names.iter().find(|(c, _, _)| own(*c)).map_or(0.0, |(_, p, _)| *p),
                 alternatives: names.iter().filter_map(other).collect(),
-                evidence: Evidence {
+                evidence: FrfEvidence {
                     gain: 2.0 * (self.search.best.fit.ln - self.search.without[index]),
                     elsewhere: places.elsewhere.clone(),
                     measured: None,

@@ -6,7 +6,7 @@ use crate::settings::ModalSettings;
 use crate::settings::modal::sizes::{AS_PROBABLE, BEYOND_ERRORS, LEAST_OF_STATED_DAMPING, NEGLIGIBLE};
 use jointscope_fixture::{Fixture, Place, StatedError};
 use jointscope_model_error::{
-    DAMPING, ErrorSizes, Evidence, FREQUENCY, GAIN, KINDS, SHAPE, SizePrior, UPPER_RESIDUAL,
+    DAMPING, ErrorSizes, FREQUENCY, GAIN, KINDS, ModelEvidence, SHAPE, SizePrior, UPPER_RESIDUAL,
 };
 use serde::Serialize;
 
@@ -96,7 +96,7 @@ impl ModalFit {
 
 impl Problem<'_> {
     /// The sizes that the recording asks for, those that are stated included: what is stated may be too little.
-    pub(crate) fn seen(&self, fit: &ModalFit) -> Evidence {
+    pub(crate) fn seen(&self, fit: &ModalFit) -> ModelEvidence {
         if !self.stated.contains(&true) {
             return fit.evidence;
         }

@@ -6,7 +6,7 @@ mod search;
 
 use crate::catalogue::catalogue;
 use crate::estimates::estimates;
-use crate::finding::{Evidence, Finding, Tried};
+use crate::finding::{Finding, FrfEvidence, Tried};
 use crate::fitter::Fitter;
 use crate::modal::features::Features;
 use crate::modal::fit::{ANY, ModalFit, SetOut};
@@ -318,7 +318,7 @@ fn found_with_gains(gains: [f64; 4]) -> [Vec<Estimate>; 2] {
     let judged = ModalJudgement::of(&fitter, &nominal, &[], None).unwrap();
     let covariance = fitter.information(&truth).covariance();
     let estimates = estimates(&truth, 0, &lump, covariance.as_ref(), 1.0);
-    let evidence = Evidence { gain: 0.0, elsewhere: Vec::new(), measured: None };
+    let evidence = FrfEvidence { gain: 0.0, elsewhere: Vec::new(), measured: None };
     let finding = Finding {
         effect: lump,
         estimates: estimates.clone(),
@@ -488,7 +488,7 @@ fn one_finding_of_the_lines_is_no_more_probable_than_the_name_that_the_modes_hol
         estimates: Vec::new(),
         probability: 0.9,
         alternatives: vec![(third.clone(), 0.06)],
-        evidence: Evidence { gain: 0.0, elsewhere: Vec::new(), measured: None },
+        evidence: FrfEvidence { gain: 0.0, elsewhere: Vec::new(), measured: None },
     };
     judged_lump(|fitter, lump, judged| {
         let so_exact = |exact: bool| {
