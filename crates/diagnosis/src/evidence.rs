@@ -23,7 +23,8 @@ pub(crate) fn explained(observation: &Observation, settings: &Settings) -> f64 {
 /// Whether a hypothesis' quantities lie no farther from what is stated than chance takes them.
 pub(crate) fn deviates_by_chance(fitter: &Fitter, hypothesis: &Hypothesis) -> bool {
     let quantities = hypothesis.tolerances().len() as f64;
-    hypothesis.strain() <= quantities + fitter.settings.selection.deviated * (2.0 * quantities).sqrt()
+    hypothesis.squared_departures_of_quantities()
+        <= quantities + fitter.settings.selection.deviated * (2.0 * quantities).sqrt()
 }
 
 /// Minus twice the logarithm of the evidence, up to a constant: χ² and priors, divided by the variance `inflation`, and a penalty for every
@@ -37,9 +38,9 @@ pub(crate) fn cost(fitter: &Fitter, fit: &Fit, inflation: f64) -> f64 {
 fn unlisted(fitter: &Fitter, best: &Fit) -> f64 {
     let Fitter { observation, settings, .. } = fitter;
     let chi2_per_dof = best.chi2_per_dof(observation);
-    let strain = excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty()).max(0.0);
+    let misfit = excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty()).max(0.0);
     let company = best.hypothesis.effect_count().saturating_sub(1) as f64;
-    let cost = settings.evidence.unlisted - settings.evidence.company * company - strain * strain;
+    let cost = settings.evidence.unlisted - settings.evidence.company * company - misfit * misfit;
     (-0.5 * cost.max(LEAST_COST)).exp()
 }
 

@@ -202,7 +202,7 @@ impl Hypothesis {
     }
 
     /// The same of the fixture's quantities alone: how far one that an effect calls wrong lies from what is stated says nothing against the others.
-    pub(crate) fn strain(&self) -> f64 {
+    pub(crate) fn squared_departures_of_quantities(&self) -> f64 {
         let stated = self.parameters.iter().zip(&self.coordinates).take(self.tolerances.len());
         stated.map(|(parameter, at)| parameter.squared_departure(*at)).sum()
     }
