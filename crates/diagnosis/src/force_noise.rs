@@ -9,7 +9,7 @@ use crate::Observation;
 use crate::evidence::explained;
 use crate::fit::Fit;
 use crate::fitter::Fitter;
-use crate::penalty::penalty;
+use crate::penalty::needed_gain;
 use crate::settings::lines::force_noise::MOST_SHORTFALL;
 
 /// Shares of the possible shortfall at which the fixture is refitted; the best lies where the parabola through them has its least.
@@ -82,7 +82,7 @@ impl Shortfall {
     /// Whether it earns its parameter and leaves no more than noise.
     pub(crate) fn explains(&self, fitter: &Fitter) -> bool {
         let settings = &fitter.settings.selection;
-        let needed = penalty(settings, settings.parameter_penalty, 1);
+        let needed = needed_gain(settings, settings.parameter_penalty, 1);
         let left = self.fit.chi2_per_dof(fitter.observation);
         self.before - self.fit.objective > needed && left < explained(fitter.observation, fitter.settings)
     }

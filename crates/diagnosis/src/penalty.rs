@@ -6,7 +6,7 @@ use crate::settings::SelectionSettings;
 
 /// What an effect must gain in χ² to be believed, given the penalty of its parameters. A search over many candidates at several starts each gains
 /// 2 ln(candidates) more by its best one: the price of looking.
-pub(crate) fn penalty(settings: &SelectionSettings, parameters: f64, candidates: usize) -> f64 {
+pub(crate) fn needed_gain(settings: &SelectionSettings, parameters: f64, candidates: usize) -> f64 {
     settings.penalty + parameters + 2.0 * (candidates as f64).ln()
 }
 

@@ -6,7 +6,7 @@ use crate::evidence::{cost, deviates_by_chance, explains, nothing_can_be_stated}
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::odd_record::OddRecord;
-use crate::penalty::{parameter_penalty, penalty};
+use crate::penalty::{needed_gain, parameter_penalty};
 use crate::ranking::Ranking;
 use crate::settings::Settings;
 use crate::together::as_one;
@@ -235,7 +235,7 @@ impl Search {
         let settings = &fitter.settings.selection;
         let cost = |fit: &Fit| parameter_penalty(settings, &fit.hypothesis);
         let gain = (without.objective - with.objective) / with.inflation(fitter.observation);
-        gain > penalty(settings, cost(with) - cost(without), self.candidates.len())
+        gain > needed_gain(settings, cost(with) - cost(without), self.candidates.len())
     }
 
     /// Whether a fit may still lack something large; what fits already can only lack something small, which the local search finds.
@@ -255,7 +255,7 @@ impl Search {
     /// Fits of `base` with one more effect, best first by objective and penalty of parameters, with the candidate's index.
     fn ranked(&self, fitter: &Fitter, base: &Fit) -> Vec<(usize, Fit)> {
         // What gains less than the price of looking is not believed.
-        let limit = base.objective - penalty(&fitter.settings.selection, 0.0, self.candidates.len());
+        let limit = base.objective - needed_gain(&fitter.settings.selection, 0.0, self.candidates.len());
         if self.is_sure {
             return self.ranking(fitter).nearby(&base.hypothesis, limit);
         }
@@ -327,7 +327,7 @@ impl Search {
         while index < self.repaired.hypothesis.effect_count() {
             // A quarter of an effect misses a sixteenth of what the whole does: what that makes clear needs no more fits.
             let inflation = self.repaired.inflation(fitter.observation);
-            let needed = settings.clear * inflation * penalty(settings, 0.0, self.candidates.len());
+            let needed = settings.clear * inflation * needed_gain(settings, 0.0, self.candidates.len());
             let faded = fitter.faded(&self.repaired.hypothesis, index, self.repaired.objective + needed);
             let Some(fewer) = faded else {
                 index += 1;

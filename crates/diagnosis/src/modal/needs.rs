@@ -13,7 +13,7 @@ use crate::modal::features::Features;
 use crate::modal::fit::ModalFit;
 use crate::modal::judgement::ModalJudgement;
 use crate::modal::prior::priors_among;
-use crate::penalty::{parameter_penalty, penalty};
+use crate::penalty::{needed_gain, parameter_penalty};
 use crate::search::Search;
 use crate::settings::modal::judgement::CERTAIN;
 use crate::settings::modal::sizes::BEYOND_ERRORS;
@@ -79,7 +79,7 @@ fn explains_more_than_errors(fitter: &Fitter, search: &Search, features: &Featur
     let unknowns = structural.unknowns as f64;
     let errors = structural.chi2 + unknowns - CERTAIN * (2.0 * unknowns).sqrt();
     let parameters = parameter_penalty(&settings.selection, &repaired.hypothesis);
-    let needed = penalty(&settings.selection, parameters, search.candidates.len());
+    let needed = needed_gain(&settings.selection, parameters, search.candidates.len());
     errors - chi2 > needed * repaired.inflation(observation)
 }
 
