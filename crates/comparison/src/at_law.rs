@@ -158,8 +158,8 @@ impl FiledJoint {
         for (i, &slot) in slots.iter().enumerate() {
             mean[slot] = own.at[i] + step[i];
             for (j, &with) in slots.iter().enumerate() {
-                of[slot][with] =
-                    self.model_error.strain * covariance.at(i, j) + self.model_error.covariance[slot][with];
+                of[slot][with] = self.model_error.tolerance_inflation * covariance.at(i, j)
+                    + self.model_error.covariance[slot][with];
             }
         }
         Some((mean, of))

@@ -17,11 +17,13 @@ pub enum Caution {
         chi2_per_dof: f64,
     },
     /// The fit had to move the fixture's quantities farther than chance does.
-    StrainedFixture {
+    #[serde(rename = "strained_fixture")]
+    LargeDepartures {
         /// Which joint.
         joint: String,
         /// Squared departures per what chance makes of them.
-        strain: f64,
+        #[serde(rename = "strain")]
+        tolerance_inflation: f64,
     },
     /// Physics does not allow what the FRFs ask for.
     Refused {
@@ -129,16 +131,16 @@ impl Caution {
         let judged = decomposed.judgement.as_ref();
         let fit = decomposed.fitted.as_ref();
         let inflated = fit.filter(|fit| fit.model_error.inflation > 1.0).and_then(|fit| fit.chi2_per_dof);
-        let strain = fit.map_or(1.0, |fit| fit.model_error.strain);
+        let tolerance_inflation = fit.map_or(1.0, |fit| fit.model_error.tolerance_inflation);
         if judged.is_some_and(|judged| judged.verdict == "unusable") {
             all.push(Caution::Unusable { joint: joint() });
         }
-        let stated = judged.and_then(|judged| judged.poor_fit).filter(|_| strain <= 1.0);
+        let stated = judged.and_then(|judged| judged.poor_fit).filter(|_| tolerance_inflation <= 1.0);
         if let Some(chi2_per_dof) = inflated.or(stated) {
             all.push(Caution::PoorFit { joint: joint(), chi2_per_dof });
         }
-        if strain > 1.0 {
-            all.push(Caution::StrainedFixture { joint: joint(), strain });
+        if tolerance_inflation > 1.0 {
+            all.push(Caution::LargeDepartures { joint: joint(), tolerance_inflation });
         }
         if fit.is_some_and(|fit| fit.on_the_boundary_of_passive) {
             all.push(Caution::OnTheBoundary { joint: joint() });

@@ -143,8 +143,8 @@ pub struct Pair {
     /// how the errors of their numbers go together.
     pub equality: Option<Equality>,
     /// Numbers that this test leaves out, since neither joint's FRFs tell anything of them.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub untold: Vec<String>,
+    #[serde(rename = "untold", skip_serializing_if = "Vec::is_empty")]
+    pub undetermined: Vec<String>,
     /// Their laws over frequency, where they count as following laws of their own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub laws_differ: Option<LawsDiffer>,
@@ -222,7 +222,7 @@ impl Pair {
             second: names[1].to_owned(),
             numbers: all,
             equality: tested.and_then(|by| Equality::by_law(by, numbers)),
-            untold: tested
+            undetermined: tested
                 .and_then(|by| by.first())
                 .map_or_else(Vec::new, |(_, by)| undetermined_by_both(by, numbers)),
             laws_differ: None,

@@ -82,14 +82,15 @@ pub struct ModelError {
     /// Of the noise's variance; 1 where noise and tolerances explain the FRFs.
     pub inflation: f64,
     /// Of the posterior's, where quantities are farther from what is stated than chance takes them; 1 where they are not.
-    pub strain: f64,
+    #[serde(rename = "strain")]
+    pub tolerance_inflation: f64,
     /// What of the covariance comes from it besides.
     pub covariance: [[f64; 6]; 6],
 }
 
 impl Default for ModelError {
     fn default() -> Self {
-        ModelError { inflation: 1.0, strain: 1.0, covariance: [[0.0; 6]; 6] }
+        ModelError { inflation: 1.0, tolerance_inflation: 1.0, covariance: [[0.0; 6]; 6] }
     }
 }
 

@@ -236,13 +236,13 @@ fn fitted_with_others(fitted: &FiledJoint) -> Vec<String> {
     let unexplained = chi2.map(|chi2| {
         format!("use with care: the fit leaves chi2 per degree of freedom {chi2:.3}, so noise and tolerances do not explain the test in full")
     });
-    let strained = (error.strain > 1.0).then(|| {
+    let departing = (error.tolerance_inflation > 1.0).then(|| {
         format!(
             "use with care: the fit moves the fixture's quantities {:.1} times as far as chance does",
-            error.strain.sqrt()
+            error.tolerance_inflation.sqrt()
         )
     });
-    unexplained.into_iter().chain(strained).collect()
+    unexplained.into_iter().chain(departing).collect()
 }
 
 /// Remarks on what physics forbids of the joint that the FRFs speak for.

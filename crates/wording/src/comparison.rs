@@ -48,12 +48,12 @@ pub(crate) fn equality(equality: &Equality, names: [&str; 2]) -> String {
 pub fn tested(comparison: &Comparison, pair: &Pair) -> String {
     let names = [pair.first.as_str(), pair.second.as_str()];
     let [first, second] = names;
-    let untold = pair.untold.join(", ");
+    let undetermined = pair.undetermined.join(", ");
     match pair.equality {
-        Some(tested) if untold.is_empty() => equality(&tested, names),
+        Some(tested) if undetermined.is_empty() => equality(&tested, names),
         Some(tested) => {
             format!(
-                "{}; {untold}, of which neither's FRFs tell anything, are left out",
+                "{}; {undetermined}, of which neither's FRFs tell anything, are left out",
                 equality(&tested, names)
             )
         }
@@ -72,7 +72,7 @@ pub fn tested(comparison: &Comparison, pair: &Pair) -> String {
                  law has a probability of {probability}"
             )
         }),
-        None if !untold.is_empty() => {
+        None if !undetermined.is_empty() => {
             "no number has a standard deviation: equality cannot be tested".to_owned()
         }
         None => format!(
@@ -256,9 +256,9 @@ impl Says for Caution {
                  may be off by more than their ±",
                 short(*chi2_per_dof)
             ),
-            Caution::StrainedFixture { joint, strain } => format!(
+            Caution::LargeDepartures { joint, tolerance_inflation } => format!(
                 "{joint}: its fit moves the fixture's quantities {} times as far as chance does, so something that the fixture leaves out is in its numbers",
-                short(strain.sqrt())
+                short(tolerance_inflation.sqrt())
             ),
             Caution::Refused { joint, tests } => refused(joint, tests),
             Caution::OnTheBoundary { joint } => format!(

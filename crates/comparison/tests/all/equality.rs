@@ -185,7 +185,7 @@ fn numbers_that_neither_joints_frfs_tell_are_left_out_of_the_test_of_equality_an
     let viscous = by_law(("viscous", 1.0, [1000.0, 40.0]), ("fractional", 1e-9, [1002.0, 60.0]));
     let found = both(&[bare.clone(), bare, viscous]);
     let pair = &found.pairs[0];
-    assert_eq!((pair.equality.unwrap().degrees, &pair.untold[..]), (1, &["C11".to_owned()][..]));
+    assert_eq!((pair.equality.unwrap().degrees, &pair.undetermined[..]), (1, &["C11".to_owned()][..]));
     assert!(tested(&found, pair).contains("C11, of which neither's FRFs tell anything, are left out"));
 }
 

@@ -349,8 +349,8 @@ fn blocks_that_are_strained_widen_nothing_that_does_not_rest_on_them() {
     let found = compared(&files, &ComparisonOptions::default());
     let calm = compared(&[other(1000.0), other(1050.0)], &ComparisonOptions::default());
     assert!((found.together.std(1, 0) / calm.together.std(0, 0) - 1.0).abs() < 1e-9);
-    let strained = compared(&[files[0].clone(), files[2].clone()], &ComparisonOptions::default());
-    assert!((found.together.std(0, 0) / strained.together.std(0, 0) - 1.0).abs() < 1e-9);
+    let departing = compared(&[files[0].clone(), files[2].clone()], &ComparisonOptions::default());
+    assert!((found.together.std(0, 0) / departing.together.std(0, 0) - 1.0).abs() < 1e-9);
     assert!((found.together.std(0, 0) / calm.together.std(0, 0) - 4.0).abs() < 0.01);
 }
 

@@ -26,11 +26,11 @@ pub(super) struct JointEntry<'a> {
 
 impl<'a> JointEntry<'a> {
     pub(super) fn of(fit: &'a JointFit) -> Self {
-        let (inflation, strain) = (fit.inflation, fit.tolerance_inflation);
+        let (inflation, tolerance_inflation) = (fit.inflation, fit.tolerance_inflation);
         JointEntry {
             fit,
             std: pair(fit.std()),
-            model_error: ModelError { inflation, strain, covariance: fit.model_covariance },
+            model_error: ModelError { inflation, tolerance_inflation, covariance: fit.model_covariance },
             follows: follows(fit),
             law: fit.law().map(LawFit::name),
             laws: fit.laws.iter().map(law).collect(),
