@@ -3,7 +3,7 @@
 use crate::joint::symmetric;
 use crate::numbering::Numbering;
 use crate::numbers::short;
-use crate::{Export, ExportError, ExportOptions, Joint, JointEnd, JointLine};
+use crate::{Export, ExportError, ExportOptions, Joint, JointAtFrequency, JointNode};
 use jointscope_beam::mass_of_ends;
 use jointscope_comparison::{Decomposed, Ends, FiledJoint, FiledTests, Matrix, Uncertain};
 use std::collections::BTreeMap;
@@ -273,7 +273,7 @@ fn placed(
             (None, None) => nodes.numbering.point(&end.point, end.x, &says),
         };
         nodes.points.insert(end.point.clone(), node);
-        Ok::<_, ExportError>(JointEnd { point: end.point.clone(), body: end.body.clone(), x: end.x, node })
+        Ok::<_, ExportError>(JointNode { point: end.point.clone(), body: end.body.clone(), x: end.x, node })
     };
     let [[_, k12], [_, k22]] = estimate.stiffness;
     let [[_, c12], [_, c22]] = estimate.damping;
@@ -294,7 +294,7 @@ fn placed(
     })
 }
 
-fn lines(decomposed: &Decomposed) -> Result<Vec<JointLine>, ExportError> {
+fn lines(decomposed: &Decomposed) -> Result<Vec<JointAtFrequency>, ExportError> {
     if decomposed.relation != "exact" {
         return Err(ExportError::PaperLines);
     }
@@ -302,11 +302,11 @@ fn lines(decomposed: &Decomposed) -> Result<Vec<JointLine>, ExportError> {
         let why = "joints that one fit found at once have none; `jointscope decompose --joint` solves the lines of one joint that alone connects its sides";
         return Err(ExportError::NoLines(why.to_owned()));
     }
-    let lines: Vec<JointLine> = decomposed
+    let lines: Vec<JointAtFrequency> = decomposed
         .lines
         .iter()
         .filter(|line| !line.noisy)
-        .map(|line| JointLine {
+        .map(|line| JointAtFrequency {
             frequency: line.frequency,
             stiffness: symmetric(&line.stiffness),
             damping: symmetric(&line.damping),

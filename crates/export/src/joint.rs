@@ -9,9 +9,9 @@ use serde::{Serialize, Serializer};
 /// Share of √(c11·c22) to which centres agree where nothing is known of their uncertainty.
 const ROUNDING: f64 = 1e-9;
 
-/// One end of a joint in the finite-element model.
+/// The node of the finite-element model at one end of a joint.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct JointEnd {
+pub struct JointNode {
     /// The point's name in the fixture.
     pub point: String,
     /// The body's name.
@@ -33,9 +33,9 @@ pub struct Joint {
     /// What the matrices are.
     pub says: String,
     /// The near end.
-    pub from: JointEnd,
+    pub from: JointNode,
     /// The far end.
-    pub to: JointEnd,
+    pub to: JointNode,
     /// L, m.
     pub length: f64,
     /// Whether the bodies do not rotate: only the elements (1,1) mean anything.
@@ -53,12 +53,12 @@ pub struct Joint {
     /// Covariance, where it is known.
     pub covariance: Option<Covariance>,
     /// K and C by frequency, where they are asked for, ascending.
-    pub lines: Vec<JointLine>,
+    pub lines: Vec<JointAtFrequency>,
 }
 
-/// K and C at a frequency.
+/// K and C of a joint at a frequency.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct JointLine {
+pub struct JointAtFrequency {
     /// Hz.
     pub frequency: f64,
     /// K.
@@ -223,8 +223,8 @@ struct BothEnds {
 struct Written<'a> {
     name: &'a str,
     says: &'a str,
-    from: &'a JointEnd,
-    to: &'a JointEnd,
+    from: &'a JointNode,
+    to: &'a JointNode,
     length: f64,
     rotates: bool,
     stiffness: Matrix,
@@ -239,7 +239,7 @@ struct Written<'a> {
     elastic_centre: Option<ElasticCentre>,
     both_ends: BothEnds,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    lines: &'a [JointLine],
+    lines: &'a [JointAtFrequency],
 }
 
 impl Serialize for Joint {

@@ -41,7 +41,7 @@ mod write;
 pub use decomposition::of_decompositions;
 pub use diagnosis::of_diagnosis;
 pub use error::ExportError;
-pub use joint::{Covariance, ElasticCentre, Joint, JointEnd, JointLine, both_ends};
+pub use joint::{Covariance, ElasticCentre, Joint, JointAtFrequency, JointNode, both_ends};
 pub use parts::{Element, Export, Node, Omitted, Part};
 pub use program::{Form, Program};
 pub use write::{json, write};

@@ -1,6 +1,6 @@
 //! K, C, structural damping and mass of a fixture's joint, its effects included.
 
-use crate::JointLine;
+use crate::JointAtFrequency;
 use jointscope_beam::Matrix4;
 use jointscope_comparison::Matrix;
 use jointscope_fixture::{
@@ -72,10 +72,10 @@ impl<'a> RepairedJoint<'a> {
     }
 
     /// K and C on lines.
-    pub(crate) fn lines(&self, hz: impl Iterator<Item = f64>) -> Vec<JointLine> {
+    pub(crate) fn lines(&self, hz: impl Iterator<Item = f64>) -> Vec<JointAtFrequency> {
         hz.map(|frequency| {
             let (stiffness, damping, _) = self.at(TAU * frequency);
-            JointLine { frequency, stiffness, damping }
+            JointAtFrequency { frequency, stiffness, damping }
         })
         .collect()
     }

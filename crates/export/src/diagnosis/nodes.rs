@@ -2,7 +2,7 @@
 
 use crate::numbering::Numbering;
 use crate::repaired_joint::is_on;
-use crate::{ExportError, JointEnd};
+use crate::{ExportError, JointNode};
 use jointscope_fixture::{Effect, EffectKind, Fixture, Point};
 use std::collections::BTreeMap;
 
@@ -91,11 +91,11 @@ impl<'a> FixtureNodes<'a> {
         }
     }
 
-    pub(super) fn end(&mut self, point: usize) -> JointEnd {
+    pub(super) fn end(&mut self, point: usize) -> JointNode {
         let node = self.node_of(point);
         let named = &self.fixture.points()[point];
         let body = self.fixture.bodies()[named.body].name.clone();
-        JointEnd { point: named.name.clone(), body, x: self.x_of(point), node }
+        JointNode { point: named.name.clone(), body, x: self.x_of(point), node }
     }
 }
 
