@@ -142,7 +142,7 @@ impl Notes {
             if !names.is_empty() {
                 let mut names = names.to_vec();
                 names.sort();
-                self.texts.push(format!("{} {what}: {}", counted(names.len(), "FRF"), enumeration(names)));
+                self.texts.push(format!("{} {what}: {}", with_count(names.len(), "FRF"), enumeration(names)));
             }
         };
         say(&gathered.elsewhere, "at nodes that the fixture does not have left out");
@@ -194,7 +194,7 @@ impl Notes {
         }
         if !other_quantities.is_empty() {
             other_quantities.sort();
-            let (count, names) = (counted(other_quantities.len(), "function"), enumeration(other_quantities));
+            let (count, names) = (with_count(other_quantities.len(), "function"), enumeration(other_quantities));
             self.texts.push(format!("{count} of type FRF, but no motion per force, left out: {names}"));
         }
         self.texts.extend(units.into_texts(options.assume_units.as_ref()));
@@ -214,7 +214,7 @@ impl Notes {
     }
 }
 
-fn counted(count: usize, what: &str) -> String {
+fn with_count(count: usize, what: &str) -> String {
     if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }
 
@@ -349,5 +349,5 @@ fn same_lines<'a>(
 /// `400 lines from 2.5 to 1000 Hz`.
 fn extent(lines: &SpectralLines) -> String {
     let hz = lines.hz();
-    format!("{} from {} to {} Hz", counted(hz.len(), "line"), in_text(hz[0]), in_text(hz[hz.len() - 1]))
+    format!("{} from {} to {} Hz", with_count(hz.len(), "line"), in_text(hz[0]), in_text(hz[hz.len() - 1]))
 }
