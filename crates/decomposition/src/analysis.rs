@@ -1,8 +1,9 @@
 //! A recording decomposed for a joint: all that was found.
 
 use crate::{
-    Averages, CrossingFrfs, DecompositionError, Element, InterfaceSpectrum, Interfaces, JointEnds, JointFit,
-    JointSpectrum, Judgement, LikelihoodFit, Method, Part, Relation, ToleranceShare,
+    Averages, CrossingFrfs, DecompositionError, DynamicStiffnessPart, InterfaceSpectrum, Interfaces,
+    JointEnds, JointFit, JointSpectrum, Judgement, LikelihoodFit, MatrixElement, Method, Relation,
+    ToleranceShare,
 };
 use jointscope_frf::noise::NoiseSource;
 use jointscope_linalg::{ComplexMatrix2, RealMatrix2};
@@ -74,7 +75,7 @@ impl Analysis {
     }
 
     /// What the fixture as it stands predicts for an element at a line of the recording; nothing where that is not known.
-    pub fn nominal_at(&self, line: usize, part: Part, element: Element) -> Option<f64> {
+    pub fn nominal_at(&self, line: usize, part: DynamicStiffnessPart, element: MatrixElement) -> Option<f64> {
         let (_, joint) = self.nominal.get(line)?.as_ref().filter(|_| !self.spectrum.scalar)?;
         Some(element.of(&part.of(self.spectrum.stiffness_and_damping(line, *joint))))
     }
@@ -82,8 +83,13 @@ impl Analysis {
     /// The fixture's element over the averaging band, on the lines that the averages were taken over.
     ///
     /// For the exact relation a stiffness is the joint's own; what eq (7) (`paper`) makes of it, and every damping, is a mean over lines.
-    pub fn nominal_average(&self, part: Part, element: Element, paper: bool) -> Option<f64> {
-        if part == Part::Stiffness && !paper {
+    pub fn nominal_average(
+        &self,
+        part: DynamicStiffnessPart,
+        element: MatrixElement,
+        paper: bool,
+    ) -> Option<f64> {
+        if part == DynamicStiffnessPart::Stiffness && !paper {
             return Some(element.of(&self.nominal_stiffness));
         }
         // The nominal curves are those of the spectrum's own relation.

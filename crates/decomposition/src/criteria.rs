@@ -1,7 +1,9 @@
 //! The criteria by which an analysis is judged: its fit, what fit and means say of each other, the fixture.
 
 use crate::settings::estimates::{BEYOND_CHANCE, NOT_RIGID, ON_THE_BOUNDARY};
-use crate::{Analysis, Contradiction, Element, Estimate, Judgement, Method, Part, Relation, Use};
+use crate::{
+    Analysis, Contradiction, DynamicStiffnessPart, Estimate, Judgement, MatrixElement, Method, Relation, Use,
+};
 use jointscope_fixture::{Fixture, JointLaw, Nature, Quantity};
 use jointscope_inference::Z95;
 
@@ -11,7 +13,7 @@ impl Judgement {
         let best = Estimate::best(analysis);
         let scalar = analysis.spectrum.scalar;
         let fit = analysis.likelihood.as_ref().ok();
-        let first = best.figure(Part::Stiffness, Element::all(scalar)[0]);
+        let first = best.figure(DynamicStiffnessPart::Stiffness, MatrixElement::all(scalar)[0]);
         let whole = analysis.joint_fit.as_ref().ok();
         let poor_fit = match whole {
             Some(whole) => (!whole.explains()).then_some(whole.chi2_per_dof),
@@ -20,7 +22,7 @@ impl Judgement {
         let contradiction = contradiction(analysis, &best);
         let not_rigid = analysis.spectrum.h41.rigidity().filter(|chi2| *chi2 > NOT_RIGID);
         let agrees_with_fixture =
-            Element::distinct(scalar).all(|element| agrees(analysis, fixture, &best, element));
+            MatrixElement::distinct(scalar).all(|element| agrees(analysis, fixture, &best, element));
         let excluded = contradiction.is_some_and(|contradiction| contradiction.excludes_use());
         let verdict = if (fit.is_none() && whole.is_none()) || !first.is_determined() || excluded {
             Use::Unusable
@@ -54,11 +56,15 @@ fn contradiction(analysis: &Analysis, best: &Estimate) -> Option<Contradiction> 
     }
     let weighted = Estimate::weighted(analysis)?;
     let plain = Estimate::plain(analysis);
-    let root =
-        |index: usize| best.figure(Part::Stiffness, Element { row: index, column: index }).value.abs().sqrt();
-    let differences = Element::all(analysis.spectrum.scalar).iter().filter_map(|&element| {
-        let [fit, mean, plain] =
-            [best, &weighted, &plain].map(|estimate| estimate.figure(Part::Stiffness, element));
+    let root = |index: usize| {
+        best.figure(DynamicStiffnessPart::Stiffness, MatrixElement { row: index, column: index })
+            .value
+            .abs()
+            .sqrt()
+    };
+    let differences = MatrixElement::all(analysis.spectrum.scalar).iter().filter_map(|&element| {
+        let [fit, mean, plain] = [best, &weighted, &plain]
+            .map(|estimate| estimate.figure(DynamicStiffnessPart::Stiffness, element));
         // Tolerances of the weighted mean are much those of the plain one.
         let tolerance = plain.tolerance.unwrap_or(0.0);
         let difference = (fit.value - mean.value).abs();
@@ -69,15 +75,15 @@ fn contradiction(analysis: &Analysis, best: &Estimate) -> Option<Contradiction> 
     differences.max_by(|a, b| a.relative.total_cmp(&b.relative))
 }
 
-fn agrees(analysis: &Analysis, fixture: &Fixture, best: &Estimate, element: Element) -> bool {
-    let figure = best.figure(Part::Stiffness, element);
+fn agrees(analysis: &Analysis, fixture: &Fixture, best: &Estimate, element: MatrixElement) -> bool {
+    let figure = best.figure(DynamicStiffnessPart::Stiffness, element);
     let known = nominal_std(analysis, fixture, element).unwrap_or(0.0);
-    let nominal = analysis.nominal_average(Part::Stiffness, element, best.paper);
+    let nominal = analysis.nominal_average(DynamicStiffnessPart::Stiffness, element, best.paper);
     nominal.is_some_and(|nominal| (figure.value - nominal).abs() <= Z95 * figure.total().hypot(known))
 }
 
 /// How well the fixture knows an element of its joint's stiffness.
-fn nominal_std(analysis: &Analysis, fixture: &Fixture, element: Element) -> Option<f64> {
+fn nominal_std(analysis: &Analysis, fixture: &Fixture, element: MatrixElement) -> Option<f64> {
     let joint = fixture.joint(&analysis.joint)?;
     let relative = |q: &Quantity, nature: Nature| Some(q.std(nature, false)? / q.value);
     match &joint.law {

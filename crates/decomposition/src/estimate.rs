@@ -4,7 +4,7 @@ use crate::settings::estimates::NOT_DETERMINED;
 use jointscope_inference::Z95;
 use jointscope_linalg::RealMatrix2;
 
-use crate::{Analysis, Element, MatrixAverage, Method, Part, Relation};
+use crate::{Analysis, DynamicStiffnessPart, MatrixAverage, MatrixElement, Method, Relation};
 
 /// K and C with standard deviations from noise and from the fixture's tolerances. The fit's noise holds also what it costs that
 /// a constant joint does not explain the FRFs.
@@ -115,7 +115,7 @@ impl Estimate {
     }
 
     /// An element with its deviations.
-    pub fn figure(&self, part: Part, element: Element) -> Figure {
+    pub fn figure(&self, part: DynamicStiffnessPart, element: MatrixElement) -> Figure {
         Figure {
             value: element.of(&part.of(self.value)),
             noise: element.of(&part.of(self.noise)),

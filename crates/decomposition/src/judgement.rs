@@ -1,6 +1,6 @@
 //! What the best estimate of a joint is worth: the verdict and its grounds.
 
-use crate::Element;
+use crate::MatrixElement;
 use crate::settings::estimates::CONTRADICTED;
 use serde::Serialize;
 
@@ -22,7 +22,7 @@ pub enum Use {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Contradiction {
     /// The element of k that differs most.
-    pub element: Element,
+    pub element: MatrixElement,
     /// What the fit makes of it, SI.
     pub fit: f64,
     /// What the mean makes of it, SI.

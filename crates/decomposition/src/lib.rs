@@ -63,7 +63,7 @@ mod tolerances;
 pub use analysis::Analysis;
 pub use averages::{Averages, MatrixAverage};
 pub use crossing::{CrossingError, CrossingFrfs};
-pub use element::{Element, Part};
+pub use element::{DynamicStiffnessPart, MatrixElement};
 pub use estimate::{Estimate, Figure};
 pub use from_frfs::AnalysisOptions;
 pub(crate) use idle_points::IdlePoints;

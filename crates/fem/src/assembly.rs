@@ -1,7 +1,7 @@
 //! Mass and stiffness of a mesh over its free equations.
 
 use crate::brick::{self, EQUATIONS, NODES, gradient_in_space, shape};
-use crate::{FemError, Mesh, Part};
+use crate::{BrickOwner, FemError, Mesh};
 use jointscope_linalg::{SparsePattern, SparseSymmetric};
 
 /// Mass and stiffness of a mesh over its free equations.
@@ -68,7 +68,7 @@ impl Matrices {
     pub fn observation(
         &self,
         mesh: &Mesh,
-        part: Part,
+        part: BrickOwner,
         x: f64,
         y: f64,
         slope: bool,

@@ -37,7 +37,7 @@ mod twin;
 pub use assembly::Matrices;
 pub use brick::Elasticity;
 pub use deck::calculix_deck;
-pub use mesh::{Element, Mesh, Part};
+pub use mesh::{Brick, BrickOwner, Mesh};
 pub use omissions::Omissions;
 pub use superposition::Superposition;
 pub use twin::{ModeKind, ModeRange, Progress, Twin};

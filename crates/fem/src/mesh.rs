@@ -7,7 +7,7 @@ use jointscope_fixture::{Fixture, Geometry};
 
 /// What an element belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
+pub enum BrickOwner {
     /// A body, by index.
     Body(usize),
     /// A joint's strip, by index.
@@ -18,13 +18,13 @@ pub enum Part {
 
 /// A brick of the mesh.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Element {
+pub struct Brick {
     /// Its nodes: corners of the lower face, of the upper face, then midsides below, above and upright, as in the C3D20 of CalculiX.
     pub nodes: [usize; NODES],
     /// Index of its material.
     pub material: usize,
     /// What it belongs to.
-    pub part: Part,
+    pub part: BrickOwner,
 }
 
 /// The assembly as 20-node bricks; where it is cut along z = 0, the nodes there do not move across.
@@ -33,7 +33,7 @@ pub struct Mesh {
     /// Places of the nodes, m.
     pub nodes: Vec<[f64; 3]>,
     /// The elements.
-    pub elements: Vec<Element>,
+    pub elements: Vec<Brick>,
     /// Materials by index, as in the fixture's geometry.
     pub materials: Vec<Elasticity>,
     /// Whether the depth is meshed on both sides of z = 0.
@@ -45,7 +45,7 @@ struct Solid {
     from: [f64; 3],
     to: [f64; 3],
     material: usize,
-    part: Part,
+    part: BrickOwner,
 }
 
 impl Mesh {
@@ -92,7 +92,7 @@ impl Mesh {
             from: [0.0, 0.0, -0.5 * size[2]],
             to: [size[0], size[1], 0.5 * size[2]],
             material: 0,
-            part: Part::Body(0),
+            part: BrickOwner::Body(0),
         };
         Mesh::on_lines(&[line(0), line(1), line(2)], &[solid], vec![material], true)
     }
@@ -137,7 +137,7 @@ impl Mesh {
                 }
             }
         }
-        let element = |(places, solid): ([usize; NODES], &Solid)| Element {
+        let element = |(places, solid): ([usize; NODES], &Solid)| Brick {
             nodes: places.map(|place| numbers[place]),
             material: solid.material,
             part: solid.part,
@@ -147,12 +147,12 @@ impl Mesh {
     }
 
     /// The nodes of an element, in space.
-    pub fn places(&self, element: &Element) -> [[f64; 3]; NODES] {
+    pub fn places(&self, element: &Brick) -> [[f64; 3]; NODES] {
         element.nodes.map(|node| self.nodes[node])
     }
 
     /// The element of `part` at (x, y, 0), and where it is in natural coordinates; the nearest one for a place outside.
-    pub fn locate(&self, part: Part, x: f64, y: f64) -> Option<(usize, [f64; 3])> {
+    pub fn locate(&self, part: BrickOwner, x: f64, y: f64) -> Option<(usize, [f64; 3])> {
         let mut best: Option<(f64, usize, [f64; 3])> = None;
         for (index, element) in self.elements.iter().enumerate().filter(|(_, e)| e.part == part) {
             let (low, high) = (self.nodes[element.nodes[0]], self.nodes[element.nodes[6]]);
@@ -175,7 +175,7 @@ const FASTEST: f64 = 1e6;
 const MOST_CELLS: usize = 200_000;
 
 fn solids(fixture: &Fixture, geometry: &Geometry) -> Vec<Solid> {
-    let boxed = |x: [f64; 2], y: f64, height: f64, depth: f64, material: usize, part: Part| Solid {
+    let boxed = |x: [f64; 2], y: f64, height: f64, depth: f64, material: usize, part: BrickOwner| Solid {
         from: [x[0], y - 0.5 * height, -0.5 * depth],
         to: [x[1], y + 0.5 * height, 0.5 * depth],
         material,
@@ -183,7 +183,7 @@ fn solids(fixture: &Fixture, geometry: &Geometry) -> Vec<Solid> {
     };
     let bodies = geometry.bodies.iter().enumerate().map(|(index, body)| {
         let x = [body.from.value, body.to.value];
-        boxed(x, body.y.value, body.height.value, body.depth.value, body.material, Part::Body(index))
+        boxed(x, body.y.value, body.height.value, body.depth.value, body.material, BrickOwner::Body(index))
     });
     let mut solids: Vec<Solid> = bodies.collect();
     for (index, strip) in geometry.joints.iter().enumerate() {
@@ -191,13 +191,13 @@ fn solids(fixture: &Fixture, geometry: &Geometry) -> Vec<Solid> {
         let layer = |side: usize| strip.interfaces[side].as_ref().map_or(0.0, |layer| layer.thickness.value);
         let (inner, outer) =
             ([start + layer(0), end - layer(1)], [[start, start + layer(0)], [end - layer(1), end]]);
-        let section = |x: [f64; 2], material: usize, part: Part| {
+        let section = |x: [f64; 2], material: usize, part: BrickOwner| {
             boxed(x, strip.y.value, strip.thickness.value, strip.width.value, material, part)
         };
-        solids.push(section(inner, strip.material, Part::Joint(index)));
+        solids.push(section(inner, strip.material, BrickOwner::Joint(index)));
         for (side, interface) in strip.interfaces.iter().enumerate() {
             if let Some(interface) = interface {
-                solids.push(section(outer[side], interface.material, Part::Layer(index, side)));
+                solids.push(section(outer[side], interface.material, BrickOwner::Layer(index, side)));
             }
         }
     }

@@ -1,6 +1,6 @@
 //! What a solid has and the lumped model has not, switched off one by one to see what each is worth.
 
-use crate::{Mesh, Part};
+use crate::{BrickOwner, Mesh};
 
 /// What the lumped model leaves out, switched off in the solid: one at a time it shows what each is worth, all together the twin is the
 /// lumped model.
@@ -46,8 +46,8 @@ impl Omissions {
         mesh.materials.append(&mut blocks);
         for element in &mut mesh.elements {
             element.material += match element.part {
-                Part::Body(_) => 2 * count,
-                Part::Joint(_) | Part::Layer(..) => count,
+                BrickOwner::Body(_) => 2 * count,
+                BrickOwner::Joint(_) | BrickOwner::Layer(..) => count,
             };
         }
     }

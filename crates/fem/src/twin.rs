@@ -1,7 +1,7 @@
 //! A fixture as a deformable solid: its mesh, matrices and lowest modes.
 
 use crate::assembly::Matrices;
-use crate::{FemError, Mesh, MeshOptions, Part};
+use crate::{BrickOwner, FemError, Mesh, MeshOptions};
 use jointscope_fixture::{BodyKind, Fixture};
 use jointscope_linalg::{ModesWanted, SparseModes, lowest_modes};
 use std::f64::consts::TAU;
@@ -170,7 +170,7 @@ impl Twin {
     }
 
     fn station(&self, body: usize, x: f64, y: f64, slope: bool) -> Result<Vec<(usize, f64)>, FemError> {
-        self.matrices.observation(&self.mesh, Part::Body(body), x, y, slope).ok_or(FemError::NoGeometry)
+        self.matrices.observation(&self.mesh, BrickOwner::Body(body), x, y, slope).ok_or(FemError::NoGeometry)
     }
 
     /// Where the boxes of `geometry` and the fixture's rigid bodies differ in mass, inertia or centre of gravity by more than the

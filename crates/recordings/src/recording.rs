@@ -194,7 +194,8 @@ impl Notes {
         }
         if !other_quantities.is_empty() {
             other_quantities.sort();
-            let (count, names) = (with_count(other_quantities.len(), "function"), enumeration(other_quantities));
+            let (count, names) =
+                (with_count(other_quantities.len(), "function"), enumeration(other_quantities));
             self.texts.push(format!("{count} of type FRF, but no motion per force, left out: {names}"));
         }
         self.texts.extend(units.into_texts(options.assume_units.as_ref()));

@@ -6,8 +6,8 @@ use crate::format::{fixed, quantity, significant, trimmed};
 use crate::numbers::counted;
 use crate::{Remarks, Summary, capitalised};
 use jointscope_decomposition::{
-    Analysis, Contradiction, Element, Estimate, Figure, JointFit, JointsFit, LikelihoodFit, Method, Part,
-    Relation,
+    Analysis, Contradiction, DynamicStiffnessPart, Estimate, Figure, JointFit, JointsFit, LikelihoodFit,
+    MatrixElement, Method, Relation,
 };
 use jointscope_fixture::{Fixture, JointLaw};
 use jointscope_frf::noise::NoiseSource;
@@ -54,20 +54,20 @@ impl Subject<'_> {
     }
 }
 
-fn first(subject: &Subject) -> Element {
-    Element::all(subject.is_scalar())[0]
+fn first(subject: &Subject) -> MatrixElement {
+    MatrixElement::all(subject.is_scalar())[0]
 }
 
 /// A figure of an estimate's K with its uncertainty.
-fn value(estimate: &Estimate, element: Element) -> (Figure, String) {
-    let figure = estimate.figure(Part::Stiffness, element);
-    (figure, quantity(figure.value, figure.total(), unit(Part::Stiffness, element)))
+fn value(estimate: &Estimate, element: MatrixElement) -> (Figure, String) {
+    let figure = estimate.figure(DynamicStiffnessPart::Stiffness, element);
+    (figure, quantity(figure.value, figure.total(), unit(DynamicStiffnessPart::Stiffness, element)))
 }
 
 fn headline(subject: &Subject) -> String {
     let (element, best, judgement) = (first(subject), subject.best, &subject.analysis.judgement);
     let (joint, owner) = (&subject.analysis.joint, subject.nominal_owner());
-    let symbol = symbol(Part::Stiffness, element, best.paper);
+    let symbol = symbol(DynamicStiffnessPart::Stiffness, element, best.paper);
     let (figure, value) = value(best, element);
     let mean = match best.method {
         Method::AllFrfs if subject.is_paper() => " (exact joint, all FRFs)",
@@ -84,7 +84,7 @@ fn headline(subject: &Subject) -> String {
             "Joint {joint}: no constant k and c fits these FRFs; {symbol} = {value} is not to be used."
         );
     }
-    let nominal = subject.analysis.nominal_average(Part::Stiffness, element, best.paper);
+    let nominal = subject.analysis.nominal_average(DynamicStiffnessPart::Stiffness, element, best.paper);
     match nominal.filter(|nominal| *nominal != 0.0) {
         Some(_) if judgement.agrees_with_fixture => {
             format!("Joint {joint}: {symbol} = {value}{mean}, as {owner} within uncertainty.")
@@ -142,12 +142,12 @@ fn details(subject: &Subject) -> Vec<String> {
 }
 
 fn contradicted(subject: &Subject, Contradiction { element, fit, mean, .. }: Contradiction) -> String {
-    let text = |value: f64| quantity(value, None, unit(Part::Stiffness, element));
+    let text = |value: f64| quantity(value, None, unit(DynamicStiffnessPart::Stiffness, element));
     format!(
         "The mean over {} contradicts the fit beyond both ±, most in {}: {} against {}. The model, not the noise, limits what is \
          known of this joint; take the difference for the uncertainty.",
         band(subject.analysis),
-        symbol(Part::Stiffness, element, false),
+        symbol(DynamicStiffnessPart::Stiffness, element, false),
         text(mean),
         text(fit)
     )
@@ -162,7 +162,7 @@ fn paper_means(subject: &Subject) -> Option<String> {
             "Eq (7) gives {} = {value} as a plain mean over {}. It leaves out that a rotation of one end of the joint moves the other, so it \
              varies with frequency even for a constant joint, and its mean depends on the band. The maximum-likelihood figures are the \
              exact joint's.",
-            symbol(Part::Stiffness, element, true),
+            symbol(DynamicStiffnessPart::Stiffness, element, true),
             band(subject.analysis)
         )
     })
@@ -171,15 +171,16 @@ fn paper_means(subject: &Subject) -> Option<String> {
 /// The other elements of K against the fixture's, where the first is determined.
 fn other_elements(subject: &Subject) -> Option<String> {
     let (best, paper) = (subject.best, subject.best.paper);
-    let is_determined = |element| best.figure(Part::Stiffness, element).is_determined();
-    let elements = Element::distinct(subject.is_scalar()).skip(1).filter(|_| is_determined(first(subject)));
+    let is_determined = |element| best.figure(DynamicStiffnessPart::Stiffness, element).is_determined();
+    let elements =
+        MatrixElement::distinct(subject.is_scalar()).skip(1).filter(|_| is_determined(first(subject)));
     let shares = elements.filter_map(|element| {
-        let nominal = subject.analysis.nominal_average(Part::Stiffness, element, paper)?;
-        let symbol = symbol(Part::Stiffness, element, paper);
+        let nominal = subject.analysis.nominal_average(DynamicStiffnessPart::Stiffness, element, paper)?;
+        let symbol = symbol(DynamicStiffnessPart::Stiffness, element, paper);
         if !is_determined(element) {
             return Some(format!("{symbol} is not determined"));
         }
-        let value = best.figure(Part::Stiffness, element).value;
+        let value = best.figure(DynamicStiffnessPart::Stiffness, element).value;
         (nominal != 0.0).then(|| format!("{symbol} is {}", share(value / nominal)))
     });
     let shares: Vec<String> = shares.collect();

@@ -1,29 +1,29 @@
 //! The elements of K and C as they are written.
 
-use jointscope_decomposition::{Element, Method, Part};
+use jointscope_decomposition::{DynamicStiffnessPart, MatrixElement, Method};
 
 const INDICES: [[&str; 2]; 2] = [["₁₁", "₁₂"], ["₂₁", "₂₂"]];
 const STIFFNESS_UNITS: [[&str; 2]; 2] = [["N/m", "N/rad"], ["N*m/m", "N*m/rad"]];
 const DAMPING_UNITS: [[&str; 2]; 2] = [["N*s/m", "N*s/rad"], ["N*s", "N*m*s/rad"]];
 
 /// Its indices in small figures.
-pub fn index(element: Element) -> &'static str {
+pub fn index(element: MatrixElement) -> &'static str {
     INDICES[element.row][element.column]
 }
 
 /// `k₁₁`, or `K₁₁` for what eq (7) gives.
-pub fn symbol(part: Part, element: Element, paper: bool) -> String {
+pub fn symbol(part: DynamicStiffnessPart, element: MatrixElement, paper: bool) -> String {
     let letter = if paper { part.of(("K", "C")) } else { part.of(("k", "c")) };
     format!("{letter}{}", index(element))
 }
 
 /// Its unit, SI.
-pub fn unit(part: Part, element: Element) -> &'static str {
+pub fn unit(part: DynamicStiffnessPart, element: MatrixElement) -> &'static str {
     part.of((STIFFNESS_UNITS, DAMPING_UNITS))[element.row][element.column]
 }
 
 /// What the element connects, in words.
-pub fn meaning(part: Part, element: Element) -> String {
+pub fn meaning(part: DynamicStiffnessPart, element: MatrixElement) -> String {
     let load = ["force", "moment"][element.row];
     let motion = part.of((["displacement", "rotation"], ["velocity", "angular velocity"]))[element.column];
     format!("{load} per {motion}")

@@ -2,7 +2,9 @@
 
 use super::pair::pair;
 use jointscope_comparison::{EstimateEntry, MatrixPair, Nominal};
-use jointscope_decomposition::{Analysis, Element, LikelihoodFit, MatrixAverage, Part, Relation};
+use jointscope_decomposition::{
+    Analysis, DynamicStiffnessPart, LikelihoodFit, MatrixAverage, MatrixElement, Relation,
+};
 use jointscope_linalg::RealMatrix2;
 use serde::Serialize;
 
@@ -46,11 +48,11 @@ pub(super) fn averages(analysis: &Analysis) -> EstimateEntry {
 /// K and C of the fixture as it stands, read as the lines are; `null` where no line of the band has them.
 pub(super) fn nominal(analysis: &Analysis) -> Nominal {
     let paper = analysis.spectrum.relation == Relation::Paper;
-    let element = |part: Part, row: usize, column: usize| {
-        analysis.nominal_average(part, Element { row, column }, paper)
+    let element = |part: DynamicStiffnessPart, row: usize, column: usize| {
+        analysis.nominal_average(part, MatrixElement { row, column }, paper)
     };
-    let of = |part: Part| [0, 1].map(|row| [0, 1].map(|column| element(part, row, column)));
-    Nominal { stiffness: of(Part::Stiffness), damping: of(Part::Damping) }
+    let of = |part: DynamicStiffnessPart| [0, 1].map(|row| [0, 1].map(|column| element(part, row, column)));
+    Nominal { stiffness: of(DynamicStiffnessPart::Stiffness), damping: of(DynamicStiffnessPart::Damping) }
 }
 
 pub(super) fn across(analysis: &Analysis, fit: &LikelihoodFit) -> AcrossJoint {

@@ -1,6 +1,6 @@
 //! K and C over the spectral lines.
 
-use jointscope_decomposition::{Analysis, Element, Estimate, Method, Part};
+use jointscope_decomposition::{Analysis, DynamicStiffnessPart, Estimate, MatrixElement, Method};
 use jointscope_inference::interval95;
 
 use super::subject::Subject;
@@ -11,10 +11,10 @@ use jointscope_wording::element::{meaning, symbol, unit};
 pub(super) fn sections(subject: &Subject) -> [Section; 2] {
     let columns = if subject.is_scalar() { 1 } else { 2 };
     let symbols = if subject.is_paper() { ("K", "C") } else { ("k", "c") };
-    [(Part::Stiffness, "Stiffness", symbols.0), (Part::Damping, "Damping", symbols.1)].map(
+    [(DynamicStiffnessPart::Stiffness, "Stiffness", symbols.0), (DynamicStiffnessPart::Damping, "Damping", symbols.1)].map(
         |(part, word, symbol)| {
             let mut section = Section::new(format!("{word} by line")).paragraph(introduction(subject, part, symbol));
-            if part == Part::Stiffness && subject.is_paper() {
+            if part == DynamicStiffnessPart::Stiffness && subject.is_paper() {
                 section = section.paragraph(
                     "Eq (7) takes the motion at both ends of the joint as that of one place. It leaves out the transport \
                      R = [[1, L],[0, 1]] over the joint's length: a rotation of the near end moves the far end by L·θ, and a \
@@ -23,18 +23,18 @@ pub(super) fn sections(subject: &Subject) -> [Section; 2] {
                      there. Signs are those of eq (7).",
                 );
             }
-            let elements = Element::all(subject.is_scalar());
+            let elements = MatrixElement::all(subject.is_scalar());
             section.plots(columns, elements.iter().map(|element| plot(subject, part, *element)))
         },
     )
 }
 
-fn introduction(subject: &Subject, part: Part, symbol: &str) -> String {
+fn introduction(subject: &Subject, part: DynamicStiffnessPart, symbol: &str) -> String {
     let analysis = subject.analysis;
     let noisy = analysis.noisy_lines();
     let of = match part {
-        Part::Stiffness => "the real part of the dynamic stiffness",
-        Part::Damping => "its imaginary part over ω",
+        DynamicStiffnessPart::Stiffness => "the real part of the dynamic stiffness",
+        DynamicStiffnessPart::Damping => "its imaginary part over ω",
     };
     let solved = analysis.spectrum.solved.len();
     let dots = match noisy {
@@ -55,7 +55,7 @@ fn introduction(subject: &Subject, part: Part, symbol: &str) -> String {
     )
 }
 
-fn plot(subject: &Subject, part: Part, element: Element) -> Plot {
+fn plot(subject: &Subject, part: DynamicStiffnessPart, element: MatrixElement) -> Plot {
     let analysis = subject.analysis;
     let paper = subject.is_paper();
     let symbol = symbol(part, element, paper);
@@ -93,7 +93,7 @@ fn plot(subject: &Subject, part: Part, element: Element) -> Plot {
 }
 
 /// The law that the joint's numbers are of over the lines, its mass included as the lines hold it; of spectra by the exact relation, where laws were compared.
-fn law(subject: &Subject, part: Part, element: Element) -> Option<Vec<Option<f64>>> {
+fn law(subject: &Subject, part: DynamicStiffnessPart, element: MatrixElement) -> Option<Vec<Option<f64>>> {
     let analysis = subject.analysis;
     let fit = analysis.joint_fit.as_ref().ok().filter(|_| !subject.is_paper())?;
     // Without laws and mass it is level, which is drawn as such.
@@ -105,7 +105,11 @@ fn law(subject: &Subject, part: Part, element: Element) -> Option<Vec<Option<f64
 }
 
 /// The horizontal line: the best figure of the same relation as the spectrum.
-fn level(subject: &Subject, part: Part, element: Element) -> Option<(&'static str, f64)> {
+fn level(
+    subject: &Subject,
+    part: DynamicStiffnessPart,
+    element: MatrixElement,
+) -> Option<(&'static str, f64)> {
     if subject.analysis.lines_hold_mass() {
         return None;
     }
@@ -123,7 +127,7 @@ fn level(subject: &Subject, part: Part, element: Element) -> Option<(&'static st
     Some((label, estimate.figure(part, element).value)).filter(|(_, value)| value.is_finite())
 }
 
-fn caption(subject: &Subject, part: Part, element: Element) -> String {
+fn caption(subject: &Subject, part: DynamicStiffnessPart, element: MatrixElement) -> String {
     let symbol = symbol(part, element, subject.is_paper());
     let what = if subject.is_paper() {
         "eq (7) varies over the lines even for a constant joint; the dashed curve is what it makes of the fixture's".to_owned()
@@ -145,7 +149,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(analysis: &Analysis, part: Part, element: Element) -> Self {
+    fn of(analysis: &Analysis, part: DynamicStiffnessPart, element: MatrixElement) -> Self {
         let count = analysis.spectrum.h41.lines.len();
         let empty = || vec![None; count];
         let mut columns =

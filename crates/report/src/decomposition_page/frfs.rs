@@ -1,6 +1,6 @@
 //! The FRFs behind the joint: H41 of the blocks, coherence and noise of each recorded FRF.
 
-use jointscope_decomposition::Element;
+use jointscope_decomposition::MatrixElement;
 use jointscope_linalg::ComplexMatrix2;
 use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
@@ -13,7 +13,7 @@ use jointscope_wording::element::index;
 const UNITS: [&str; 4] = ["m/N", "m/(N*m)", "rad/N", "rad/(N*m)"];
 
 pub(super) fn section(subject: &Subject) -> Section {
-    let elements = Element::all(subject.is_scalar());
+    let elements = MatrixElement::all(subject.is_scalar());
     let columns = if subject.is_scalar() { 1 } else { 2 };
     let panes: Vec<FrfPanes> = elements.iter().map(|element| panes(subject, *element)).collect();
     let magnitudes = panes.iter().map(|panes| {
@@ -47,7 +47,7 @@ fn introduction(subject: &Subject) -> String {
 }
 
 /// H41's element, measured (gaps where lines are masked) and as the fixture predicts it.
-fn panes<'a>(subject: &Subject<'a>, element: Element) -> FrfPanes<'a> {
+fn panes<'a>(subject: &Subject<'a>, element: MatrixElement) -> FrfPanes<'a> {
     let analysis = subject.analysis;
     let (plan, h41) = (&analysis.plan, &analysis.spectrum.h41);
     let motion = if element.row == 0 { "y" } else { "θ" };

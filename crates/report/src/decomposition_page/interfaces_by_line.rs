@@ -1,7 +1,7 @@
 //! The joint's interfaces over the spectral lines (eq 6), beside the single numbers.
 
 use jointscope_decomposition::{
-    Compliance, InterfaceLine, InterfaceSpectrum, InterfaceStiffness, LineInterface, Part,
+    Compliance, DynamicStiffnessPart, InterfaceLine, InterfaceSpectrum, InterfaceStiffness, LineInterface,
 };
 use jointscope_inference::Z95;
 
@@ -27,9 +27,10 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
          light one from tolerances as well, the beam's own EI and length included; what tolerances do is alike on neighbouring lines. The beam is taken as without losses: those that it has count as the interfaces'."
     ));
     let told = ends.told(found);
-    let springs = told
-        .iter()
-        .flat_map(|end| [Part::Stiffness, Part::Damping].map(|part| spring_plot(subject, found, part, end)));
+    let springs = told.iter().flat_map(|end| {
+        [DynamicStiffnessPart::Stiffness, DynamicStiffnessPart::Damping]
+            .map(|part| spring_plot(subject, found, part, end))
+    });
     let compliances = ends.all().into_iter().flat_map(|end| {
         [("Real part", true), ("Imaginary part", false)]
             .map(|(word, real)| compliance_plot(subject, found, word, real, end))
@@ -163,12 +164,12 @@ fn warnings(found: &InterfaceSpectrum, ends: &Ends) -> Vec<String> {
 /// χ² per degree of freedom of D12 = D21 above which noise does not explain their difference.
 const NOT_RECIPROCAL: f64 = 2.0;
 
-fn spring_plot(subject: &Subject, found: &InterfaceSpectrum, part: Part, end: &End) -> Plot {
+fn spring_plot(subject: &Subject, found: &InterfaceSpectrum, part: DynamicStiffnessPart, end: &End) -> Plot {
     let unit = match (part, end.is_rotation) {
-        (Part::Stiffness, false) => "N/m",
-        (Part::Stiffness, true) => "N*m/rad",
-        (Part::Damping, false) => "N*s/m",
-        (Part::Damping, true) => "N*m*s/rad",
+        (DynamicStiffnessPart::Stiffness, false) => "N/m",
+        (DynamicStiffnessPart::Stiffness, true) => "N*m/rad",
+        (DynamicStiffnessPart::Damping, false) => "N*s/m",
+        (DynamicStiffnessPart::Damping, true) => "N*m*s/rad",
     };
     let symbol = part.of(("K", "C"));
     let columns = Columns::of(subject, found, |line| {
@@ -189,7 +190,7 @@ fn spring_plot(subject: &Subject, found: &InterfaceSpectrum, part: Part, end: &E
     if law.iter().any(Option::is_some) {
         plot = plot.line("law from all FRFs", Role::Estimate, law);
     }
-    if let (Part::Stiffness, Some(InterfaceStiffness::Found { stiffness, .. })) =
+    if let (DynamicStiffnessPart::Stiffness, Some(InterfaceStiffness::Found { stiffness, .. })) =
         (part, end.at_rest.map(|compliance| compliance.stiffness()))
     {
         plot = plot.horizontal("at rest, as tabled", Role::Reference, stiffness);

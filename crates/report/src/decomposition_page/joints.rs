@@ -1,6 +1,6 @@
 //! The page of several joints found at once, or of one in a loop.
 
-use jointscope_decomposition::{Element, FoundJoint, JointsFit, Part};
+use jointscope_decomposition::{DynamicStiffnessPart, FoundJoint, JointsFit, MatrixElement};
 use jointscope_fixture::Fixture;
 use jointscope_wording::{Remarks, capitalised};
 
@@ -74,13 +74,13 @@ fn drawing(fit: &JointsFit, fixture: &Fixture) -> Option<Section> {
 }
 
 /// A number of a joint.
-type Row<'a> = (&'a FoundJoint, Part, Element);
+type Row<'a> = (&'a FoundJoint, DynamicStiffnessPart, MatrixElement);
 
 fn result(fit: &JointsFit) -> Section {
     let rows = fit.joints.iter().flat_map(|joint| {
-        Part::ALL
+        DynamicStiffnessPart::ALL
             .into_iter()
-            .flat_map(move |part| Element::distinct(joint.fit.scalar).map(move |e| (joint, part, e)))
+            .flat_map(move |part| MatrixElement::distinct(joint.fit.scalar).map(move |e| (joint, part, e)))
     });
     let table = Table::of(rows)
         .words("Joint", |(joint, ..): &Row| joint.name.clone())
@@ -90,18 +90,18 @@ fn result(fit: &JointsFit) -> Section {
             quantity_in(value, element.of(&part.of(joint.fit.std())), &scale(joint, *part, *element))
         })
         .words("The fixture's", |(joint, part, element)| match part {
-            Part::Stiffness => quantity_in(element.of(&joint.nominal), None, &scale(joint, *part, *element)),
-            Part::Damping => String::new(),
+            DynamicStiffnessPart::Stiffness => quantity_in(element.of(&joint.nominal), None, &scale(joint, *part, *element)),
+            DynamicStiffnessPart::Damping => String::new(),
         })
         .caption("On d = u_to − R·u_from at each joint's far end. The ± hold noise, tolerances and what the model gets wrong.");
     Section::new("Result").with(table)
 }
 
 /// The unit of a number's row.
-fn scale(joint: &FoundJoint, part: Part, element: Element) -> Scale {
+fn scale(joint: &FoundJoint, part: DynamicStiffnessPart, element: MatrixElement) -> Scale {
     let found = element.of(&part.of((joint.fit.stiffness, joint.fit.damping)));
     let std = element.of(&part.of(joint.fit.std()));
-    let nominal = (part == Part::Stiffness).then(|| element.of(&joint.nominal));
+    let nominal = (part == DynamicStiffnessPart::Stiffness).then(|| element.of(&joint.nominal));
     Scale::for_values(nominal.into_iter().chain([found, std]), unit(part, element))
 }
 

@@ -1,6 +1,6 @@
 //! Key figures and the table of all averages.
 
-use jointscope_decomposition::{Element, Estimate, Figure, Part};
+use jointscope_decomposition::{DynamicStiffnessPart, Estimate, Figure, MatrixElement};
 
 use super::subject::Subject;
 use crate::format::{in_parts, quantity_in, significant};
@@ -42,13 +42,13 @@ fn introduction(subject: &Subject) -> String {
 
 fn cards(subject: &Subject) -> Vec<Card> {
     let scalar = subject.is_scalar();
-    Part::ALL
+    DynamicStiffnessPart::ALL
         .into_iter()
-        .flat_map(|part| Element::distinct(scalar).map(move |element| card(subject, part, element)))
+        .flat_map(|part| MatrixElement::distinct(scalar).map(move |element| card(subject, part, element)))
         .collect()
 }
 
-fn card(subject: &Subject, part: Part, element: Element) -> Card {
+fn card(subject: &Subject, part: DynamicStiffnessPart, element: MatrixElement) -> Card {
     let (best, unit) = (subject.best, unit(part, element));
     let figure = best.figure(part, element);
     let label = format!("{}, {}", symbol(part, element, best.paper), meaning(part, element));
@@ -61,7 +61,7 @@ fn card(subject: &Subject, part: Part, element: Element) -> Card {
     if let Some(nominal) = nominal {
         let text = quantity_in(nominal, None, &scale);
         match part {
-            Part::Stiffness if nominal != 0.0 && !figure.may_be_zero() => {
+            DynamicStiffnessPart::Stiffness if nominal != 0.0 && !figure.may_be_zero() => {
                 notes.push(format!("{} of nominal {text}", share(figure.value / nominal)));
             }
             _ => notes.push(format!("nominal {text}")),
@@ -81,8 +81,8 @@ fn warning(subject: &Subject) -> Option<&'static str> {
 
 /// An element in the unit of its row.
 struct Row {
-    part: Part,
-    element: Element,
+    part: DynamicStiffnessPart,
+    element: MatrixElement,
     /// The fixture's, SI.
     nominal: Option<f64>,
     scale: Scale,
@@ -90,7 +90,7 @@ struct Row {
 
 impl Row {
     /// A row whose unit suits a reference value and the nominal one.
-    fn new(part: Part, element: Element, reference: f64, nominal: Option<f64>) -> Self {
+    fn new(part: DynamicStiffnessPart, element: MatrixElement, reference: f64, nominal: Option<f64>) -> Self {
         let scale = Scale::for_values(nominal.into_iter().chain([reference]), unit(part, element));
         Row { part, element, nominal, scale }
     }
@@ -120,8 +120,8 @@ fn means_table(subject: &Subject, likelihood: Option<&Estimate>, all: Option<&Es
     let (analysis, paper) = (subject.analysis, subject.is_paper());
     let (plain, weighted) = (Estimate::plain(analysis), Estimate::weighted(analysis));
     let reference = all.or(likelihood).or(weighted.as_ref()).unwrap_or(&plain);
-    let rows = Part::ALL.into_iter().flat_map(|part| {
-        Element::all(subject.is_scalar()).iter().map(move |&element| {
+    let rows = DynamicStiffnessPart::ALL.into_iter().flat_map(|part| {
+        MatrixElement::all(subject.is_scalar()).iter().map(move |&element| {
             let nominal = analysis.nominal_average(part, element, paper);
             Row::new(part, element, reference.figure(part, element).value, nominal)
         })
@@ -181,10 +181,10 @@ fn footnotes(subject: &Subject, with_likelihood: bool) -> Vec<&'static str> {
 
 /// The exact joint beside the matrices of eq (7).
 fn likelihood_table(subject: &Subject, likelihood: &Estimate, all: Option<&Estimate>) -> Table<Row> {
-    let rows = Part::ALL.into_iter().flat_map(|part| {
-        Element::distinct(subject.is_scalar()).map(move |element| {
+    let rows = DynamicStiffnessPart::ALL.into_iter().flat_map(|part| {
+        MatrixElement::distinct(subject.is_scalar()).map(move |element| {
             let nominal = subject.analysis.nominal_average(part, element, false);
-            let nominal = nominal.filter(|_| part == Part::Stiffness);
+            let nominal = nominal.filter(|_| part == DynamicStiffnessPart::Stiffness);
             Row::new(part, element, likelihood.figure(part, element).value, nominal)
         })
     });

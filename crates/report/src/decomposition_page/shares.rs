@@ -1,6 +1,6 @@
 //! Which tolerances of the fixture matter.
 
-use jointscope_decomposition::{Element, Estimate, Method, Part, ToleranceShare};
+use jointscope_decomposition::{DynamicStiffnessPart, Estimate, MatrixElement, Method, ToleranceShare};
 use jointscope_fixture::{Dof, Fixture, NamedQuantity, Nature, QuantityKey as Key, QuantityOwner};
 use jointscope_linalg::RealMatrix2;
 
@@ -88,10 +88,11 @@ pub(super) fn section(subject: &Subject) -> Section {
 }
 
 /// k11, k12, k22, c11, or k11 and c11 of a scalar joint.
-fn watched(subject: &Subject) -> Vec<(Part, Element)> {
+fn watched(subject: &Subject) -> Vec<(DynamicStiffnessPart, MatrixElement)> {
     let scalar = subject.is_scalar();
-    let mut watched: Vec<(Part, Element)> = Element::distinct(scalar).map(|e| (Part::Stiffness, e)).collect();
-    watched.push((Part::Damping, Element::all(scalar)[0]));
+    let mut watched: Vec<(DynamicStiffnessPart, MatrixElement)> =
+        MatrixElement::distinct(scalar).map(|e| (DynamicStiffnessPart::Stiffness, e)).collect();
+    watched.push((DynamicStiffnessPart::Damping, MatrixElement::all(scalar)[0]));
     watched
 }
 
@@ -99,7 +100,7 @@ fn effect<'a>(
     subject: &Subject,
     share: &ToleranceShare,
     quantities: &'a [NamedQuantity],
-    watched: &[(Part, Element)],
+    watched: &[(DynamicStiffnessPart, MatrixElement)],
 ) -> Option<Effect<'a>> {
     let quantity = quantities.iter().find(|quantity| quantity.path == share.path)?;
     let changes: (RealMatrix2, RealMatrix2) = match subject.best.method {
@@ -111,7 +112,7 @@ fn effect<'a>(
         _ => None,
     };
     let of = across.as_ref().unwrap_or(subject.best);
-    let relative = |&(part, element): &(Part, Element)| {
+    let relative = |&(part, element): &(DynamicStiffnessPart, MatrixElement)| {
         element.of(&part.of(changes)) / of.figure(part, element).value.abs()
     };
     Some(Effect { quantity, std: share.std, relative: watched.iter().map(relative).collect() })

@@ -1,7 +1,7 @@
 //! The solid's FRFs: its finite-element twin with all switched off that is not concealed.
 
 use crate::GenerationError;
-use jointscope_fem::{Element, Mesh, MeshOptions, ModeRange, Omissions, Part, Superposition, Twin};
+use jointscope_fem::{Brick, BrickOwner, Mesh, MeshOptions, ModeRange, Omissions, Superposition, Twin};
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
@@ -57,18 +57,18 @@ fn restore(mesh: &mut Mesh, options: &MeshOptions, shown: &Shown) {
     let plain = mesh.materials.len() / sets;
     let mut changed: Vec<usize> = Vec::new();
     for index in 0..mesh.elements.len() {
-        let Element { part, material, .. } = mesh.elements[index];
+        let Brick { part, material, .. } = mesh.elements[index];
         let mut own = mesh.materials[material];
         let (weighs, shear) = match part {
-            Part::Joint(_) => (shown.strip_mass, shown.strip_shear),
-            Part::Layer(..) => (false, shown.layer_shear),
-            Part::Body(_) => {
+            BrickOwner::Joint(_) => (shown.strip_mass, shown.strip_shear),
+            BrickOwner::Layer(..) => (false, shown.layer_shear),
+            BrickOwner::Body(_) => {
                 own.youngs_modulus *= STIFFER;
                 (false, None)
             }
         };
         own.density = match (part, weighs) {
-            (Part::Body(_), _) => own.density,
+            (BrickOwner::Body(_), _) => own.density,
             (_, true) => mesh.materials[material % plain].density,
             (_, false) => LIGHTER * own.density,
         };
