@@ -21,7 +21,7 @@ pub struct AtOnce {
 
 /// A joint's place among those that one fit found at once.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Place {
+pub struct PlaceInFit {
     /// All of them.
     pub fit: Arc<AtOnce>,
     /// Which.

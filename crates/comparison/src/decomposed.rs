@@ -1,7 +1,7 @@
 //! What `stiffness.json` says of one decomposition, read back.
 
 use crate::stiffness_file::{EstimateEntry, LineEntry, Matrix, MatrixPair, Nominal, read};
-use crate::{AtOnce, FiledJoint, Place, Source};
+use crate::{AtOnce, FiledJoint, PlaceInFit, Source};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -99,7 +99,7 @@ pub struct Decomposed {
     /// The fixture's own joint, where the file says it.
     pub nominal: Option<Nominal>,
     /// Its place among joints that one fit found at once, where it did.
-    pub at_once: Option<Place>,
+    pub at_once: Option<PlaceInFit>,
     /// Where its FRFs come from, where that is said: no file does.
     pub source: Option<Source>,
 }
@@ -240,7 +240,7 @@ fn found_at_once(name: &str, file: &Value) -> Result<Vec<Decomposed>, Decomposed
                 stiffness: k.map(|row| row.map(Some)),
                 damping: Nominal::default().damping,
             }),
-            at_once: Some(Place { fit: Arc::clone(&fit), joint: place }),
+            at_once: Some(PlaceInFit { fit: Arc::clone(&fit), joint: place }),
             source: None,
         })
     };

@@ -51,7 +51,7 @@ mod tests_of_equality;
 mod together;
 
 pub use at_law::LawOfAll;
-pub use at_once::{AtOnce, Place};
+pub use at_once::{AtOnce, PlaceInFit};
 pub use bodies::{Apart, SharedBody, WhyApart};
 pub use caution::Caution;
 pub use compared::Compared;

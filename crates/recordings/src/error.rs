@@ -8,7 +8,7 @@ use crate::{FileChannel, UnitsError};
 
 /// A function in a file: `test.uff, function 3 (FRF 4:+y/1:+y)`.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
+pub struct FunctionPlace {
     /// The file's name.
     pub source: String,
     /// Which of its functions (datasets 58), counted from 1.
@@ -17,7 +17,7 @@ pub struct Place {
     pub what: String,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FunctionPlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}, function {} ({})", self.source, self.function, self.what)
     }
@@ -96,7 +96,7 @@ pub enum RecordingError {
     #[error("{place}: {problem}")]
     Function {
         /// Which.
-        place: Box<Place>,
+        place: Box<FunctionPlace>,
         /// Why.
         problem: FunctionError,
     },
@@ -154,19 +154,19 @@ pub enum RecordingError {
         /// In the fixture's terms, with the level where there is one.
         frf: String,
         /// The first of them.
-        first: Box<Place>,
+        first: Box<FunctionPlace>,
         /// The second of them.
-        second: Box<Place>,
+        second: Box<FunctionPlace>,
     },
     /// Functions on different spectral lines.
     #[error("{second} has {second_lines}, but {first} has {first_lines}; give functions on the same lines")]
     Lines {
         /// One function.
-        first: Box<Place>,
+        first: Box<FunctionPlace>,
         /// Its lines.
         first_lines: String,
         /// The other function.
-        second: Box<Place>,
+        second: Box<FunctionPlace>,
         /// Its lines.
         second_lines: String,
     },
@@ -212,7 +212,7 @@ pub enum RecordingError {
     )]
     NotPerForce {
         /// The first of them.
-        place: Box<Place>,
+        place: Box<FunctionPlace>,
         /// Data type of the ordinate's numerator.
         numerator: i32,
         /// Data type of its denominator.
@@ -224,11 +224,11 @@ pub enum RecordingError {
     )]
     Windows {
         /// One function.
-        first: Box<Place>,
+        first: Box<FunctionPlace>,
         /// Its window's decay, 1/s.
         first_decay: f64,
         /// The other function.
-        second: Box<Place>,
+        second: Box<FunctionPlace>,
         /// Its window's decay, 1/s.
         second_decay: f64,
     },
@@ -265,7 +265,7 @@ fn remedy(count: usize, forces: bool) -> &'static str {
 }
 
 impl RecordingError {
-    pub(crate) fn function(place: Box<Place>, problem: impl Into<FunctionError>) -> Self {
+    pub(crate) fn function(place: Box<FunctionPlace>, problem: impl Into<FunctionError>) -> Self {
         RecordingError::Function { place, problem: problem.into() }
     }
 }

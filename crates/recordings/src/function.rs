@@ -5,7 +5,7 @@ use jointscope_uff::{Abscissa, Axis, Data, Dataset58, FunctionType};
 use num_complex::Complex64;
 
 use crate::ordinate::hertz;
-use crate::{FileChannel, FunctionError, HeldAmplitude, Place, Source};
+use crate::{FileChannel, FunctionError, FunctionPlace, HeldAmplitude, Source};
 
 /// A function and where it stands.
 #[derive(Debug, Clone, Copy)]
@@ -44,13 +44,13 @@ impl<'a> Function<'a> {
         }
     }
 
-    pub(crate) fn place(&self) -> Box<Place> {
+    pub(crate) fn place(&self) -> Box<FunctionPlace> {
         let (what, response) = (self.what(), self.response());
         let what = match self.dataset.function {
             FunctionType::TimeResponse => format!("{what} of {response}"),
             _ => format!("{what} {response}/{}", self.reference()),
         };
-        Box::new(Place { source: self.source.to_owned(), function: self.index + 1, what })
+        Box::new(FunctionPlace { source: self.source.to_owned(), function: self.index + 1, what })
     }
 
     /// Refuses a function that holds fewer points than its header states.

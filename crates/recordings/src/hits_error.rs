@@ -2,7 +2,7 @@
 
 use jointscope_hits::HitError;
 
-use crate::{FunctionError, Place, RecordingError};
+use crate::{FunctionError, FunctionPlace, RecordingError};
 
 /// Why the time histories of files are no hammer hits.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -34,16 +34,16 @@ pub enum HitsError {
     #[error("{place}: {problem}")]
     Channel {
         /// Which.
-        place: Box<Place>,
+        place: Box<FunctionPlace>,
         /// Why.
         problem: FunctionError,
     },
     /// Complex values over time.
     #[error("{0}: a time history is real, but its values are complex; export the signal itself")]
-    Complex(Box<Place>),
+    Complex(Box<FunctionPlace>),
     /// Samples that are not equally far apart.
     #[error("{0}: its samples are not evenly spaced in time; resample the record before it is exported")]
-    Uneven(Box<Place>),
+    Uneven(Box<FunctionPlace>),
     /// A hit whose responses have no force.
     #[error(
         "{files}: hit {hit} has no force channel (ordinate type 13), only {responses}; give the file that holds it, with the same sequence number in record 6, or leave the hit out"
@@ -64,9 +64,9 @@ pub enum HitsError {
         /// The sequence number.
         hit: i64,
         /// The first force.
-        first: Box<Place>,
+        first: Box<FunctionPlace>,
         /// The second force.
-        second: Box<Place>,
+        second: Box<FunctionPlace>,
     },
     /// Channels of one hit on different instants.
     #[error(
@@ -74,7 +74,7 @@ pub enum HitsError {
     )]
     Interval {
         /// The response.
-        place: Box<Place>,
+        place: Box<FunctionPlace>,
         /// The hit.
         hit: i64,
         /// Interval of the force's samples, s.
@@ -88,7 +88,7 @@ pub enum HitsError {
     )]
     Start {
         /// The response.
-        place: Box<Place>,
+        place: Box<FunctionPlace>,
         /// The hit.
         hit: i64,
         /// First instant of the force, s.

@@ -67,7 +67,7 @@ pub use assumed_units::{AssumedUnits, AssumedUnitsError};
 pub use channel_map::{ChannelMap, ChannelMapError, FileChannel, MapEntry};
 pub use contents::{Contents, FunctionKind, ModeShape};
 pub use datasets::{DatasetsError, to_datasets};
-pub use error::{FunctionError, Place, RecordingError};
+pub use error::{FunctionError, FunctionPlace, RecordingError};
 pub use geometry::{Geometry, GeometryError, PlacedNode, PointAlong, SpatialAxis};
 pub use histories::hits_to_datasets;
 pub use hits::{Hits, hits_of};
