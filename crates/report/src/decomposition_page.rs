@@ -48,7 +48,7 @@ pub fn decomposition_report(analysis: &Analysis, fixture: &Fixture, context: &Pa
     let best = Estimate::best(analysis);
     let subject = Subject { analysis, fixture, best: &best };
     let title = format!("Joint {}: stiffness and damping", analysis.joint);
-    let said = decomposition::Verdict::of(analysis, fixture, &best);
+    let said = decomposition::JointSummary::of(analysis, fixture, &best);
     let verdict = Verdict { tone: tone(analysis), headline: said.headline, details: said.details };
     Report::of(
         context

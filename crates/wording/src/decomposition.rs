@@ -14,18 +14,18 @@ use jointscope_frf::noise::NoiseSource;
 
 /// What a page says first of a joint.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Verdict {
+pub struct JointSummary {
     /// What the joint is, beside the fixture's.
     pub headline: String,
     /// What that rests on, and what speaks against it.
     pub details: Vec<String>,
 }
 
-impl Verdict {
+impl JointSummary {
     /// Of `best`, an estimate of `analysis`, which was made with `fixture`.
     pub fn of(analysis: &Analysis, fixture: &Fixture, best: &Estimate) -> Self {
         let subject = Subject { analysis, fixture, best };
-        Verdict { headline: headline(&subject), details: details(&subject) }
+        JointSummary { headline: headline(&subject), details: details(&subject) }
     }
 }
 
