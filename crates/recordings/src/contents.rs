@@ -4,7 +4,7 @@ mod words;
 
 use std::collections::BTreeMap;
 
-use jointscope_uff::{Dataset58, FunctionType, Location, NodalData};
+use jointscope_uff::{Dataset58, FunctionType, NodalData, ValueLocation};
 use serde::Serialize;
 
 use crate::Source;
@@ -280,10 +280,10 @@ fn mode_shape(data: &NodalData) -> ModeShape {
 fn data_name(data: &NodalData) -> String {
     let quantity = quantity_name(i32::try_from(data.quantity).unwrap_or(0)).unwrap_or("data");
     match data.location {
-        Location::Nodes => format!("{quantity} at {}", counted(data.values.len(), "node")),
-        Location::Other(2) => format!("{quantity} on elements"),
-        Location::Other(3) => format!("{quantity} at nodes on elements"),
-        Location::Other(_) => format!("{quantity} at points"),
+        ValueLocation::Nodes => format!("{quantity} at {}", counted(data.values.len(), "node")),
+        ValueLocation::Other(2) => format!("{quantity} on elements"),
+        ValueLocation::Other(3) => format!("{quantity} at nodes on elements"),
+        ValueLocation::Other(_) => format!("{quantity} at points"),
     }
 }
 

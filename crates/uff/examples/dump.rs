@@ -8,7 +8,7 @@
 use std::error::Error;
 use std::time::Instant;
 
-use jointscope_uff::{Data, Dataset58, Location, UffFile, read};
+use jointscope_uff::{Data, Dataset58, UffFile, ValueLocation, read};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -65,7 +65,7 @@ fn beside(file: &UffFile) {
     for trace in &file.traces {
         println!("trace {} {}", trace.number, numbers(&trace.nodes));
     }
-    for data in file.nodal.iter().filter(|data| data.location == Location::Nodes) {
+    for data in file.nodal.iter().filter(|data| data.location == ValueLocation::Nodes) {
         let frequency = data.frequency.unwrap_or(0.0);
         println!("data {} {} {} {frequency:e}", data.dataset, data.mode, data.values.len());
         for at in &data.values {

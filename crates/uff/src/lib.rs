@@ -70,7 +70,7 @@ pub use axis::{Axis, data_type};
 pub use dataset::{ByteOrder, Data, Dataset58, Encoding, Node, Precision, UffFile, Unreadable};
 pub use function_type::FunctionType;
 pub use geometry::{CoordinateSystem, Element, GridPoint, Header, Nodes, SystemKind, TraceLine};
-pub use nodal::{Analysis, Location, NodalData, NodeValues};
+pub use nodal::{Analysis, NodalData, NodeValues, ValueLocation};
 pub use read::read;
 pub use read_error::{BinaryProblem, ReadError, TextProblem};
 pub use units::{TemperatureMode, Units};

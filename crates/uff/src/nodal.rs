@@ -13,7 +13,7 @@ use num_complex::Complex64;
 
 /// Where the values of a dataset sit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Location {
+pub enum ValueLocation {
     /// At nodes: mode shapes, temperatures.
     Nodes,
     /// On elements or at points; of these only the header is read. The code is that of dataset 2414.
@@ -56,7 +56,7 @@ pub struct NodalData {
     /// Name (2414) or first ID line (55).
     pub name: String,
     /// Where the values sit.
-    pub location: Location,
+    pub location: ValueLocation,
     /// What kind of analysis they are from.
     pub analysis: Analysis,
     /// What they are, as [`data_type`](crate::data_type): 8 displacement, 5 temperature, …
@@ -98,6 +98,6 @@ impl NodalData {
             self.analysis,
             Analysis::NormalMode | Analysis::ComplexFirstOrder | Analysis::ComplexSecondOrder
         );
-        self.location == Location::Nodes && shape && mode
+        self.location == ValueLocation::Nodes && shape && mode
     }
 }

@@ -8,7 +8,7 @@ use super::ascii;
 use super::cursor::{Cursor, is_delimiter};
 use super::fields::line_text;
 use super::integers::{list, record};
-use crate::{Analysis, Location, NodalData, NodeValues, ReadError};
+use crate::{Analysis, NodalData, NodeValues, ReadError, ValueLocation};
 
 /// Columns of single-precision and double-precision values.
 const SINGLE: &[usize] = &[13; 6];
@@ -52,7 +52,7 @@ fn unexpected(at: &Cursor, expected: &'static str, found: i64) -> ReadError {
 }
 
 impl Form {
-    fn empty(self, dataset: u32, name: String, location: Location) -> NodalData {
+    fn empty(self, dataset: u32, name: String, location: ValueLocation) -> NodalData {
         NodalData {
             dataset,
             name,
@@ -104,7 +104,7 @@ pub(super) fn read55(cursor: &mut Cursor) -> Result<NodalData, ReadError> {
     }
     let form = form(cursor)?;
     let widths = form.widths;
-    let mut data = form.empty(55, name, Location::Nodes);
+    let mut data = form.empty(55, name, ValueLocation::Nodes);
     let at = cursor.clone();
     let [integers, reals] = record(&mut cursor.clone(), COUNTS)?;
     if !(0..=10).contains(&integers) || !(0..=12).contains(&reals) {
@@ -131,7 +131,7 @@ pub(super) fn read2414(cursor: &mut Cursor) -> Result<NodalData, ReadError> {
     let [_label] = record(cursor, "a label (dataset 2414, record 1)")?;
     let name = text(cursor, "a name (dataset 2414, record 2)")?;
     let [location] = record(cursor, "a location (dataset 2414, record 3)")?;
-    let location = if location == 1 { Location::Nodes } else { Location::Other(location) };
+    let location = if location == 1 { ValueLocation::Nodes } else { ValueLocation::Other(location) };
     for _ in 0..5 {
         text(cursor, "an ID line (dataset 2414, records 4 to 8)")?;
     }
@@ -155,7 +155,7 @@ pub(super) fn read2414(cursor: &mut Cursor) -> Result<NodalData, ReadError> {
         Analysis::Other(_) => {}
         _ => of_normal_mode(&mut data, [real(1), real(3), real(4), real(5)]),
     }
-    if data.location == Location::Nodes {
+    if data.location == ValueLocation::Nodes {
         values(cursor, &mut data, widths)?;
     } else {
         cursor.skip_to_delimiter()?;

@@ -1,7 +1,7 @@
 //! Geometry, shapes and header beside the functions: as pyuff writes them, as finite-element programs do, and damaged.
 
 use jointscope_uff::{
-    Analysis, CoordinateSystem, Element, GridPoint, Location, SystemKind, TraceLine, UffFile, read,
+    Analysis, CoordinateSystem, Element, GridPoint, SystemKind, TraceLine, UffFile, ValueLocation, read,
 };
 use num_complex::Complex64;
 
@@ -129,7 +129,7 @@ fn a_mode_of_dataset_2414_is_read_whatever_its_precision() {
     assert!(file.unreadable.is_empty(), "{:?}", file.unreadable);
     let mode = &file.nodal[0];
     assert_eq!((mode.frequency, mode.damping_ratio, mode.modal_mass), (Some(125.0), Some(0.01), Some(2.0)));
-    assert_eq!((mode.mode, mode.location, mode.dataset), (4, Location::Nodes, 2414));
+    assert_eq!((mode.mode, mode.location, mode.dataset), (4, ValueLocation::Nodes, 2414));
     let expected = [Complex64::new(-1.0, -0.2), Complex64::new(3.0, 0.0), Complex64::new(-4.0, 0.5)];
     assert_eq!(mode.values[0].values, expected);
 
@@ -149,7 +149,7 @@ fn values_on_elements_are_passed_with_their_header() {
                    \x20        1         1\n      1.8E+01\n";
     let file = read(&dataset(2414, records)).unwrap();
     assert!(file.unreadable.is_empty(), "{:?}", file.unreadable);
-    assert_eq!((file.nodal[0].location, file.nodal[0].quantity), (Location::Other(2), 94));
+    assert_eq!((file.nodal[0].location, file.nodal[0].quantity), (ValueLocation::Other(2), 94));
     assert!(!file.nodal[0].is_mode() && file.nodal[0].values.is_empty());
 }
 
