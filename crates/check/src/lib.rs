@@ -52,7 +52,7 @@ pub use reciprocity::Reciprocity;
 pub use recorded_modes::{ModePair, RecordedModes};
 pub use recording::{RecordingCheck, fixture_frfs};
 pub use remark::{Remark, Weight};
-pub use totals::{Part, Totals};
+pub use totals::{MassPart, Totals};
 
 use jointscope_estimation::{EstimateOptions, ResponseWindow};
 use jointscope_fixture::{Damping, Fixture};

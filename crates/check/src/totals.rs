@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 /// Something that has a mass.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Part {
+pub struct MassPart {
     /// Its path in the file, such as `bodies/A` or `bodies/A/masses/0`.
     pub path: String,
     /// kg.
@@ -29,7 +29,7 @@ pub struct Totals {
     /// Moment of inertia about the common centre of gravity; `None` where a body does not rotate.
     pub inertia: Option<Figure>,
     /// What it is made of.
-    pub parts: Vec<Part>,
+    pub parts: Vec<MassPart>,
 }
 
 impl Totals {
@@ -49,19 +49,19 @@ impl Totals {
 }
 
 /// Mass, centre of gravity and inertia; what is not known is NaN.
-fn sums(parts: &[Part]) -> Vec<f64> {
+fn sums(parts: &[MassPart]) -> Vec<f64> {
     let mass: f64 = parts.iter().map(|part| part.mass).sum();
     let x_cg = parts.iter().map(|part| part.x_cg.map_or(f64::NAN, |x| part.mass * x)).sum::<f64>() / mass;
-    let about = |part: &Part| match (part.inertia, part.x_cg) {
+    let about = |part: &MassPart| match (part.inertia, part.x_cg) {
         (Some(inertia), Some(x)) => inertia + part.mass * (x - x_cg).powi(2),
         _ => f64::NAN,
     };
     vec![mass, x_cg, parts.iter().map(about).sum()]
 }
 
-fn parts(fixture: &Fixture) -> Vec<Part> {
+fn parts(fixture: &Fixture) -> Vec<MassPart> {
     let mut parts = Vec::new();
-    let point = |path: String, mass: f64, x: f64, turns: bool| Part {
+    let point = |path: String, mass: f64, x: f64, turns: bool| MassPart {
         path,
         mass,
         x_cg: Some(x),
@@ -70,7 +70,7 @@ fn parts(fixture: &Fixture) -> Vec<Part> {
     for body in fixture.bodies() {
         let path = format!("bodies/{}", body.name);
         parts.push(match &body.kind {
-            BodyKind::Rigid(rigid) => Part {
+            BodyKind::Rigid(rigid) => MassPart {
                 path: path.clone(),
                 mass: rigid.mass.value,
                 x_cg: rigid.x_cg.map(|x| x.value),
@@ -80,7 +80,12 @@ fn parts(fixture: &Fixture) -> Vec<Part> {
                 let length = beam.to.value - beam.from.value;
                 let mass = beam.mass_per_length.value * length;
                 let x = 0.5 * (beam.from.value + beam.to.value);
-                Part { path: path.clone(), mass, x_cg: Some(x), inertia: Some(mass * length * length / 12.0) }
+                MassPart {
+                    path: path.clone(),
+                    mass,
+                    x_cg: Some(x),
+                    inertia: Some(mass * length * length / 12.0),
+                }
             }
         });
         for (index, mass) in body.masses.iter().enumerate() {
@@ -101,7 +106,7 @@ fn parts(fixture: &Fixture) -> Vec<Part> {
                     let (length, mass) = (fixture.joint_length(joint), effect.value(0));
                     let x = fixture.points()[joint.from].x.value + 0.5 * length;
                     let inertia = Some(mass * length * length / 12.0);
-                    parts.push(Part { path, mass, x_cg: Some(x), inertia });
+                    parts.push(MassPart { path, mass, x_cg: Some(x), inertia });
                 }
             }
             _ => {}
