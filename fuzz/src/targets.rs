@@ -7,7 +7,7 @@ use jointscope_estimation::{
 };
 use jointscope_export::{self as export, ExportOptions, Program};
 use jointscope_fixture::Fixture;
-use jointscope_hits::{Hit, Motion, Response};
+use jointscope_hits::{Hit, MeasuredMotion, Response};
 use jointscope_import::{self as import, ColumnMap};
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_recordings::{
@@ -121,7 +121,7 @@ pub fn estimation(bytes: &[u8]) {
     for number in 1..=hits {
         let force = signal();
         let response = |channel: u8| Channel::transverse(channel.to_string());
-        let motions = [Motion::Acceleration, Motion::Velocity, Motion::Displacement];
+        let motions = [MeasuredMotion::Acceleration, MeasuredMotion::Velocity, MeasuredMotion::Displacement];
         let responses: Vec<Response> = (0..channels)
             .map(|channel| Response::new(response(channel), motions[usize::from(channel)], signal()))
             .collect();

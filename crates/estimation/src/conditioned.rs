@@ -1,6 +1,6 @@
 //! A hit made ready: baselines off, faults found, windows on, spectra taken.
 
-use jointscope_hits::{Fourier, Hit, Motion, Response};
+use jointscope_hits::{Fourier, Hit, MeasuredMotion, Response};
 use num_complex::Complex64;
 
 use crate::baseline::Drift;
@@ -103,9 +103,9 @@ impl<'a> Conditioned<'a> {
             let mut spectrum =
                 transform.of(signal.values.iter().enumerate().map(|(i, v)| v * exponential(i)));
             let order = match signal.response.motion {
-                Motion::Acceleration => 0,
-                Motion::Velocity => 1,
-                Motion::Displacement => 2,
+                MeasuredMotion::Acceleration => 0,
+                MeasuredMotion::Velocity => 1,
+                MeasuredMotion::Displacement => 2,
             };
             if order > 0 {
                 let step = std::f64::consts::TAU / (interval * transform.length() as f64);

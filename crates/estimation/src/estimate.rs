@@ -1,7 +1,7 @@
 //! From hits to FRFs, with coherence and variances, and what was left out.
 
 use jointscope_frf::noise::{of_lines, smoothed};
-use jointscope_hits::{Hit, Motion};
+use jointscope_hits::{Hit, MeasuredMotion};
 use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 
@@ -167,7 +167,7 @@ struct Test<'a> {
 #[derive(Clone, PartialEq)]
 struct Sensor {
     channel: Channel,
-    motion: Motion,
+    motion: MeasuredMotion,
 }
 
 impl<'a> Test<'a> {
@@ -308,7 +308,7 @@ impl<'a> Test<'a> {
         let (mut response_noise, mut force_noise) = (0.0, 0.0);
         for (&(i, r), weight) in hits.iter().zip(weights) {
             let signal = &self.used[i].responses[r];
-            if signal.response.motion != Motion::Acceleration {
+            if signal.response.motion != MeasuredMotion::Acceleration {
                 return None;
             }
             response_noise += weight * signal.before? * signal.values.len() as f64;

@@ -7,7 +7,7 @@
 //!
 //! ```
 //! use jointscope_estimation::{Estimate, EstimateOptions};
-//! use jointscope_hits::{Hit, Motion, Response};
+//! use jointscope_hits::{Hit, MeasuredMotion, Response};
 //! use jointscope_spectra::Channel;
 //!
 //! // A mass of 2 kg hit by half a sine: its acceleration is the force over the mass.
@@ -16,7 +16,7 @@
 //! let force: Vec<f64> = (0..1024).map(pulse).collect();
 //! let hit = |number: u32| {
 //!     let acceleration = force.iter().map(|f| f / 2.0).collect();
-//!     let response = Response::new(Channel::transverse("4"), Motion::Acceleration, acceleration);
+//!     let response = Response::new(Channel::transverse("4"), MeasuredMotion::Acceleration, acceleration);
 //!     Hit::new(number, 1.0 / 4096.0, 0.0, Channel::transverse("1"), force.clone(), vec![response])
 //! };
 //! let estimate = Estimate::of(&[hit(1)?, hit(2)?], &EstimateOptions::default())?;

@@ -1,15 +1,15 @@
 //! The signals of a hammer hit: one force and the responses to it over time, in SI units and the fixture's terms.
 //!
 //! * [`Hit`]: what was recorded from one blow, all channels on the same sampling instants;
-//! * [`Response`]: one sensor's signal and the [`Motion`] it measures;
+//! * [`Response`]: one sensor's signal and the [`MeasuredMotion`] it measures;
 //! * [`Fourier`], [`InverseFourier`]: signals as spectral lines, and back.
 //!
 //! ```
-//! use jointscope_hits::{Hit, Motion, Response};
+//! use jointscope_hits::{Hit, MeasuredMotion, Response};
 //! use jointscope_spectra::Channel;
 //!
 //! let force = vec![0.0, 120.0, 80.0, 0.0];
-//! let answer = Response::new(Channel::transverse("4"), Motion::Acceleration, vec![0.0, 3.1, -2.0, 0.4]);
+//! let answer = Response::new(Channel::transverse("4"), MeasuredMotion::Acceleration, vec![0.0, 3.1, -2.0, 0.4]);
 //! let hit = Hit::new(1, 1.0 / 6400.0, 0.0, Channel::transverse("1"), force, vec![answer])?;
 //! assert_eq!(hit.peak_force(), 120.0);
 //! assert_eq!(hit.samples(), 4);
@@ -24,7 +24,7 @@ use jointscope_spectra::Channel;
 
 /// What a sensor measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Motion {
+pub enum MeasuredMotion {
     /// m, or rad.
     Displacement,
     /// m/s, or rad/s.
@@ -33,13 +33,13 @@ pub enum Motion {
     Acceleration,
 }
 
-impl Motion {
+impl MeasuredMotion {
     /// The word for it: `displacement`, `velocity` or `acceleration`.
     pub fn name(self) -> &'static str {
         match self {
-            Motion::Displacement => "displacement",
-            Motion::Velocity => "velocity",
-            Motion::Acceleration => "acceleration",
+            MeasuredMotion::Displacement => "displacement",
+            MeasuredMotion::Velocity => "velocity",
+            MeasuredMotion::Acceleration => "acceleration",
         }
     }
 }
@@ -50,14 +50,14 @@ pub struct Response {
     /// Where it sits, and whether it follows y or θ.
     pub channel: Channel,
     /// What it measures.
-    pub motion: Motion,
+    pub motion: MeasuredMotion,
     /// Its samples along +y or +θ, SI units.
     pub values: Vec<f64>,
 }
 
 impl Response {
     /// A sensor's signal.
-    pub fn new(channel: Channel, motion: Motion, values: Vec<f64>) -> Self {
+    pub fn new(channel: Channel, motion: MeasuredMotion, values: Vec<f64>) -> Self {
         Response { channel, motion, values }
     }
 }

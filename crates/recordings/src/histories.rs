@@ -1,6 +1,6 @@
 //! Time histories of hits as functions of a universal file.
 
-use jointscope_hits::{Hit, Motion};
+use jointscope_hits::{Hit, MeasuredMotion};
 use jointscope_spectra::{Channel, FrfForm};
 use jointscope_uff::{Abscissa, Axis, Data, Dataset58, Encoding, FunctionType};
 
@@ -46,10 +46,10 @@ pub fn hits_to_datasets(
 }
 
 /// The form of FRF that a motion is the numerator of.
-fn form_of(motion: Motion) -> FrfForm {
+fn form_of(motion: MeasuredMotion) -> FrfForm {
     match motion {
-        Motion::Displacement => FrfForm::Receptance,
-        Motion::Velocity => FrfForm::Mobility,
-        Motion::Acceleration => FrfForm::Accelerance,
+        MeasuredMotion::Displacement => FrfForm::Receptance,
+        MeasuredMotion::Velocity => FrfForm::Mobility,
+        MeasuredMotion::Acceleration => FrfForm::Accelerance,
     }
 }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use jointscope_fixture::Fixture;
-use jointscope_hits::{Hit, Motion, Response};
+use jointscope_hits::{Hit, MeasuredMotion, Response};
 use jointscope_spectra::{Channel, Dof, FrfForm};
 use jointscope_uff::{Abscissa, Data, FunctionType};
 
@@ -259,7 +259,9 @@ fn hit(number: u32, group: &Group, files: &dyn Fn() -> String) -> Result<Option<
     let instants = Instants::of(force.history)?;
     let mut responses = Vec::with_capacity(group.len() - 1);
     for channel in group {
-        let (Signal::Motion(form), Some((at, order))) = (channel.signal, &channel.at) else { continue };
+        let (Signal::Motion(form), Some((at, order))) = (channel.signal, &channel.at) else {
+            continue;
+        };
         instants.check(sequence, channel.history)?;
         // Without a fixture, points stand in the order of their numbers.
         let number = at.point.parse::<i64>().unwrap_or(i64::MAX);
@@ -273,11 +275,11 @@ fn hit(number: u32, group: &Group, files: &dyn Fn() -> String) -> Result<Option<
         .map_err(|problem| HitsError::Hit { files: files(), problem })
 }
 
-fn motion(form: FrfForm) -> Motion {
+fn motion(form: FrfForm) -> MeasuredMotion {
     match form {
-        FrfForm::Receptance => Motion::Displacement,
-        FrfForm::Mobility => Motion::Velocity,
-        FrfForm::Accelerance => Motion::Acceleration,
+        FrfForm::Receptance => MeasuredMotion::Displacement,
+        FrfForm::Mobility => MeasuredMotion::Velocity,
+        FrfForm::Accelerance => MeasuredMotion::Acceleration,
     }
 }
 

@@ -4,7 +4,7 @@ use crate::effects::linear_part;
 use crate::random::{log_uniform, normal, uniform};
 use crate::{Assembly, Row, Station, Structure, StructureError};
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
-use jointscope_hits::{Hit, Motion, Response};
+use jointscope_hits::{Hit, MeasuredMotion, Response};
 use jointscope_linalg::{Cholesky, dot};
 use jointscope_spectra::Channel;
 use rand::Rng;
@@ -123,8 +123,9 @@ impl StrikeTest {
         add_noise(&mut forces, self.noise_force, rng);
         responses.iter_mut().for_each(|values| add_noise(values, self.noise_response, rng));
         let responses = read.iter().zip(responses);
-        let responses =
-            responses.map(|(c, values)| Response::new(c.clone(), Motion::Acceleration, values)).collect();
+        let responses = responses
+            .map(|(c, values)| Response::new(c.clone(), MeasuredMotion::Acceleration, values))
+            .collect();
         Hit::new(number, 1.0 / self.rate, 0.0, struck.clone(), forces, responses).map_err(|_| {
             StructureError::Impossible { what: "a motion", value: f64::INFINITY, needed: "a finite one" }
         })

@@ -2,7 +2,7 @@
 
 use crate::common::{self, INTERVAL, TWO_MODES, Test, hit, pulse};
 use jointscope_estimation::{Estimate, EstimateError, EstimateOptions, Fault, Remark, Signal};
-use jointscope_hits::{Hit, Motion, Response};
+use jointscope_hits::{Hit, MeasuredMotion, Response};
 use jointscope_spectra::Channel;
 
 fn of(hits: &[Hit]) -> Result<Estimate, EstimateError> {
@@ -114,7 +114,7 @@ fn both_ways(change: impl Fn(&str, &str, f64) -> f64) -> Estimate {
             let sensor = |point: &str| {
                 let structure = if point == *struck { drive } else { cross };
                 let values = structure.answer(&force).iter().map(|v| change(point, struck, *v)).collect();
-                Response::new(Channel::transverse(point), Motion::Acceleration, values)
+                Response::new(Channel::transverse(point), MeasuredMotion::Acceleration, values)
             };
             let responses = vec![sensor("1"), sensor("2")];
             Hit::new(number, INTERVAL, 0.0, Channel::transverse(*struck), force, responses).unwrap()

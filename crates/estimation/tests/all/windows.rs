@@ -4,7 +4,7 @@ use crate::common::{INTERVAL, TWO_MODES, Test, hit, pulse};
 use jointscope_estimation::{
     Baseline, Estimate, EstimateOptions, ForceWindow, Remark, ResponseWindow, without_baselines,
 };
-use jointscope_hits::{Hit, Motion, Response};
+use jointscope_hits::{Hit, MeasuredMotion, Response};
 use jointscope_spectra::{Channel, FrfSet};
 use proptest::prelude::*;
 
@@ -90,7 +90,8 @@ fn velocity_and_displacement_sensors_give_the_same_accelerance() {
             |n| Hit::new(n, INTERVAL, 0.0, Channel::transverse("1"), force.clone(), vec![response.clone()]);
         estimate(&[hit(1).unwrap(), hit(2).unwrap()], &windowed(ResponseWindow::Decay(10.0))).frfs
     };
-    let [raw, once, twice] = [Motion::Acceleration, Motion::Velocity, Motion::Displacement].map(with);
+    let [raw, once, twice] =
+        [MeasuredMotion::Acceleration, MeasuredMotion::Velocity, MeasuredMotion::Displacement].map(with);
     for line in [5, 300, 1500] {
         let s = num_complex::Complex64::new(10.0, raw.lines().omega(line));
         let value = raw.values(0)[line];

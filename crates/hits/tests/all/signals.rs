@@ -1,6 +1,6 @@
 //! The signals of a hammer hit: one force and the responses to it over time, in SI units and the fixture's terms.
 
-use jointscope_hits::{Hit, HitError, Motion, Response};
+use jointscope_hits::{Hit, HitError, MeasuredMotion, Response};
 use jointscope_spectra::Channel;
 
 fn hit(force: Vec<f64>, responses: Vec<Response>) -> Result<Hit, HitError> {
@@ -8,7 +8,7 @@ fn hit(force: Vec<f64>, responses: Vec<Response>) -> Result<Hit, HitError> {
 }
 
 fn at(point: &str, values: Vec<f64>) -> Response {
-    Response::new(Channel::transverse(point), Motion::Acceleration, values)
+    Response::new(Channel::transverse(point), MeasuredMotion::Acceleration, values)
 }
 
 #[test]

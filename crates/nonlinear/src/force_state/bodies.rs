@@ -5,7 +5,7 @@ use crate::settings::map::DETERMINED;
 use crate::spectra::Windowed;
 use crate::time::structure::{abscissa_m, effects};
 use jointscope_fixture::{BodyKind, Dof, EffectKind, Fixture, Place, Quantity, Side};
-use jointscope_hits::{Hit, Motion, Response};
+use jointscope_hits::{Hit, MeasuredMotion, Response};
 use jointscope_linalg::Cholesky;
 use num_complex::Complex64;
 use serde::Serialize;
@@ -129,9 +129,9 @@ fn readings(
             }
         }
         let rates = match response.motion {
-            Motion::Acceleration => 0,
-            Motion::Velocity => 1,
-            Motion::Displacement => 2,
+            MeasuredMotion::Acceleration => 0,
+            MeasuredMotion::Velocity => 1,
+            MeasuredMotion::Displacement => 2,
         };
         let mut value = lines.lines(&response.values);
         value.iter_mut().enumerate().for_each(|(line, v)| *v *= lines.s(line).powi(rates) * factor);

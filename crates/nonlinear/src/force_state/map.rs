@@ -8,7 +8,7 @@ use crate::time::simulation::simulate_one;
 use crate::time::structure::{Reading, effects};
 use crate::{ForceStateError, RestoringLaw};
 use jointscope_fixture::{Dof, EffectKind, Fixture, Joint, Place};
-use jointscope_hits::{Hit, Motion, Response};
+use jointscope_hits::{Hit, MeasuredMotion, Response};
 use jointscope_lumped::nominal_stiffness;
 use jointscope_spectra::Channel;
 use num_complex::Complex64;
@@ -247,21 +247,23 @@ fn ends_simulated(
         let rotation = rotates(fixture, end).then(|| Channel::rotational(point.clone()));
         [Some(Channel::transverse(point.clone())), rotation]
     });
-    let of = |motion: Motion| channels.iter().flatten().flatten().map(move |c| (c.clone(), motion));
-    let readings: Vec<Reading> = of(Motion::Displacement).chain(of(Motion::Acceleration)).collect();
+    let of = |motion: MeasuredMotion| channels.iter().flatten().flatten().map(move |c| (c.clone(), motion));
+    let readings: Vec<Reading> =
+        of(MeasuredMotion::Displacement).chain(of(MeasuredMotion::Acceleration)).collect();
     let (simulated, _) = simulate_one(fixture, hit, &readings)?;
-    let moved = |end: usize, motion: Motion| {
+    let moved = |end: usize, motion: MeasuredMotion| {
         channels[end].each_ref().map(|channel| {
             let is_it = |r: &&Response| r.motion == motion && Some(&r.channel) == channel.as_ref();
             let read = simulated.responses().iter().find(is_it);
             read.map_or_else(|| vec![0.0; hit.samples()], |r| r.values.clone())
         })
     };
-    let [to, from] = [0, 1].map(|end| moved(end, Motion::Displacement));
+    let [to, from] = [0, 1].map(|end| moved(end, MeasuredMotion::Displacement));
     let length = fixture.points()[ends[0]].x.value - fixture.points()[ends[1]].x.value;
     // What carries the whole assembly along would swamp its lines, so d is formed before the transform.
     let d = across(&to, &from, length).map(|values| lines.lines(&values));
-    let accelerated = [0, 1].map(|end| moved(end, Motion::Acceleration).map(|values| lines.lines(&values)));
+    let accelerated =
+        [0, 1].map(|end| moved(end, MeasuredMotion::Acceleration).map(|values| lines.lines(&values)));
     Ok((d, accelerated))
 }
 

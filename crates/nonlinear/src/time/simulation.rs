@@ -6,7 +6,7 @@ use crate::SimulationError;
 use crate::settings::simulation::{ENOUGH, FEWEST_STEPS, FINE_SAMPLES, HALVINGS, MOST_STEPS};
 use crate::spectra::{oversampled, oversampled_for_lines};
 use jointscope_fixture::{EffectKind, Fixture, Place};
-use jointscope_hits::{Hit, Motion, Response};
+use jointscope_hits::{Hit, MeasuredMotion, Response};
 use jointscope_inference::each;
 use jointscope_spectra::Channel;
 
@@ -31,7 +31,7 @@ pub fn simulate(fixture: &Fixture, hits: &[Hit], outputs: &[Channel]) -> Result<
     if let Some(effect) = fixture.physics().iter().find(|e| e.kind == EffectKind::SensorMass) {
         return Err(SimulationError::SensorMass(effect.place.to_string()));
     }
-    let readings: Vec<Reading> = outputs.iter().map(|c| (c.clone(), Motion::Acceleration)).collect();
+    let readings: Vec<Reading> = outputs.iter().map(|c| (c.clone(), MeasuredMotion::Acceleration)).collect();
     let simulated: Vec<(Hit, f64)> =
         each(hits, |hit| simulate_one(fixture, hit, &readings)).into_iter().collect::<Result<_, _>>()?;
     let error = simulated.iter().fold(0.0, |worst: f64, (_, error)| error.max(worst));

@@ -5,12 +5,12 @@ use super::law::RestoringLaw;
 use crate::settings::simulation::UNFELT_MODE;
 use crate::{ChannelError, SimulationError};
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place, Point, Side};
-use jointscope_hits::Motion;
+use jointscope_hits::MeasuredMotion;
 use jointscope_lumped::{StateSpace, Station};
 use jointscope_spectra::Channel;
 
 /// What a sensor reads: where and which motion.
-pub(crate) type Reading = (Channel, Motion);
+pub(crate) type Reading = (Channel, MeasuredMotion);
 
 /// The assembly over time with its amplitude-dependent elements.
 pub(crate) struct Structure<'a> {
@@ -60,9 +60,9 @@ impl<'a> Structure<'a> {
         for (channel, motion) in readings {
             let station = station(self.fixture, channel, Side::Response)?;
             outputs.push(match motion {
-                Motion::Displacement => self.plain(self.space.displacement(&station)),
-                Motion::Velocity => self.plain(self.space.velocity(&station)),
-                Motion::Acceleration => self.acceleration(&self.space.velocity(&station), &load),
+                MeasuredMotion::Displacement => self.plain(self.space.displacement(&station)),
+                MeasuredMotion::Velocity => self.plain(self.space.velocity(&station)),
+                MeasuredMotion::Acceleration => self.acceleration(&self.space.velocity(&station), &load),
             });
         }
         outputs.extend(rows.iter().map(|row| self.plain(row.clone())));

@@ -1,7 +1,7 @@
 //! Hammer hits among time histories.
 
 use crate::common::{self, fixture, history, inches, options, source};
-use jointscope_hits::Motion;
+use jointscope_hits::MeasuredMotion;
 use jointscope_recordings::{Hits, HitsError, ReadOptions, Source, hits_of};
 use jointscope_spectra::Channel;
 use jointscope_uff::{Abscissa, Axis, Data, Dataset58, Node};
@@ -84,7 +84,7 @@ fn directions_turn_signs_and_units_become_si() {
     let hit = &hits.hits[0];
     assert!((hit.force()[1] + 8.0 * 4.4482216152605).abs() < 1e-12);
     let [velocity, rotation] = hit.responses() else { panic!("{hit:?}") };
-    assert_eq!((velocity.motion, rotation.motion), (Motion::Velocity, Motion::Acceleration));
+    assert_eq!((velocity.motion, rotation.motion), (MeasuredMotion::Velocity, MeasuredMotion::Acceleration));
     assert!((velocity.values[1] - 0.0254).abs() < 1e-12);
     assert_eq!((&rotation.channel, rotation.values[1]), (&Channel::rotational("4"), -1.0));
     assert_eq!(hits.notes.len(), 2, "{:?}", hits.notes);

@@ -1,6 +1,6 @@
 //! A structure that answers exactly as its poles say, and hammer tests on it.
 
-use jointscope_hits::{Hit, Motion, Response};
+use jointscope_hits::{Hit, MeasuredMotion, Response};
 use jointscope_spectra::Channel;
 use num_complex::Complex64;
 use rand::{Rng, SeedableRng};
@@ -98,7 +98,7 @@ impl Test {
 
 /// A hit at 1 with the acceleration at 4.
 pub(crate) fn hit(number: u32, force: Vec<f64>, response: Vec<f64>) -> Hit {
-    let response = Response::new(Channel::transverse("4"), Motion::Acceleration, response);
+    let response = Response::new(Channel::transverse("4"), MeasuredMotion::Acceleration, response);
     Hit::new(number, INTERVAL, 0.0, Channel::transverse("1"), force, vec![response]).unwrap()
 }
 
