@@ -12,7 +12,9 @@ use crate::settings::noise::{EXPLAINED, JACKKNIFE_BLOCKS};
 use crate::{CrossingFrfs, DecompositionError, JointSpectrum, Sides};
 use data::{Data, Part};
 use jointscope_averaging::Band;
-use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend, jackknife};
+use jointscope_inference::{
+    DerivativePrecision, LeastSquares, NormalEquations, Settings, descend, jackknife,
+};
 use jointscope_linalg::{Cholesky, Matrix2, RealMatrix2};
 use jointscope_spectra::FrfSet;
 use parameters::Parameters;
@@ -203,7 +205,7 @@ impl LeastSquares for Part<'_> {
     }
 
     /// In closed form, and taken with the residuals.
-    fn derivatives(&self, _: &Self::Point, _: Precision) -> Option<()> {
+    fn derivatives(&self, _: &Self::Point, _: DerivativePrecision) -> Option<()> {
         Some(())
     }
 

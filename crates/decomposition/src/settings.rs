@@ -60,13 +60,13 @@ pub(crate) mod differences {
 
 /// The fit of a constant joint to the FRFs across it.
 pub(crate) mod constant_joint {
-    use jointscope_inference::Damping;
+    use jointscope_inference::StepDamping;
 
     /// χ² per degree of freedom above which a constant joint does not explain the FRFs within their noise.
     pub(crate) const POOR_FIT: f64 = 1.3;
     /// Damping of the steps. Near the optimum χ² is nearly quadratic: undamped steps converge within a few.
-    pub(crate) const STEP_DAMPING: Damping =
-        Damping { initial: 1e-6, decrease: 0.03, least: 1e-15, raised: 0.0, most: 1e8 };
+    pub(crate) const STEP_DAMPING: StepDamping =
+        StepDamping { initial: 1e-6, decrease: 0.03, least: 1e-15, raised: 0.0, most: 1e8 };
     /// c/k of the start, s: a loss factor of 0.6 % at 300 Hz.
     pub(crate) const START_DAMPING_TIME: f64 = 3e-6;
     /// Rounds of the linear fit that finds the start.

@@ -2,7 +2,9 @@
 
 use crate::settings::Settings;
 use crate::{Fit, Hypothesis, Linearisation, Observation, Watch};
-use jointscope_inference::{Convergence, LeastSquares, Limit, NormalEquations, Precision, descend, each};
+use jointscope_inference::{
+    Convergence, DerivativePrecision, LeastSquares, Limit, NormalEquations, descend, each,
+};
 use num_complex::Complex64;
 use std::borrow::Cow;
 
@@ -52,11 +54,11 @@ impl<'a, const FIXED: bool> LeastSquares for Problem<'a, FIXED> {
         self.fitter.observation.weighted_squares(&at.predicted, weights) + at.hypothesis.squared_departures()
     }
 
-    fn derivatives(&self, at: &Iterate, precision: Precision) -> Option<Linearisation> {
+    fn derivatives(&self, at: &Iterate, precision: DerivativePrecision) -> Option<Linearisation> {
         let Fitter { observation, settings, .. } = self.fitter;
         Some(match precision {
-            Precision::Exact => self.fitter.linearised(&at.hypothesis),
-            Precision::Rough => {
+            DerivativePrecision::Exact => self.fitter.linearised(&at.hypothesis),
+            DerivativePrecision::Rough => {
                 Linearisation::forward(&at.hypothesis, &at.predicted, observation, settings.fit.difference)
             }
         })

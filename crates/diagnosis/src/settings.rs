@@ -28,7 +28,7 @@ pub(crate) mod modal;
 pub(crate) mod statements;
 pub(crate) mod work;
 
-use jointscope_inference::{Damping, Limit};
+use jointscope_inference::{Limit, StepDamping};
 use jointscope_model_error::ErrorSizes;
 pub use location::{LawSettings, LocationSettings};
 
@@ -60,7 +60,7 @@ pub struct FitSettings {
     /// Steps of one stage with inflated noise, and of the last stage.
     pub steps: (usize, usize),
     /// Damping of the steps. An effect and a quantity that do almost the same need nearly undamped ones.
-    pub damping: Damping,
+    pub damping: StepDamping,
     /// Decrease of the objective below which a fit has converged: a hundredth of what one parameter gains by chance.
     pub converged: f64,
     /// The same as a share of what a poor fit leaves beyond the degrees of freedom: such fits are compared across large differences.
@@ -341,7 +341,7 @@ impl Default for Settings {
         Settings {
             fit: FitSettings {
                 steps: (12, 60),
-                damping: Damping { initial: 1e-8, decrease: 0.1, least: 1e-13, raised: 0.0, most: 1e7 },
+                damping: StepDamping { initial: 1e-8, decrease: 0.1, least: 1e-13, raised: 0.0, most: 1e7 },
                 converged: 0.01,
                 negligible: 1e-5,
                 inflated: 0.01,

@@ -1,6 +1,6 @@
 //! The damped Gauss–Newton method, from derivatives that are taken anew as seldom as possible.
 
-use crate::problem::{LeastSquares, Precision};
+use crate::problem::{DerivativePrecision, LeastSquares};
 use crate::settings::{Limit, Settings};
 
 /// Where a descent ended.
@@ -34,7 +34,8 @@ pub fn descend<P: LeastSquares>(
         settings.exact_at_end
             && settings.limit.is_some_and(|limit| objective - limit.objective <= limit.reach)
     };
-    let mut precision = if within_reach(objective) { Precision::Exact } else { Precision::Rough };
+    let mut precision =
+        if within_reach(objective) { DerivativePrecision::Exact } else { DerivativePrecision::Rough };
     let mut fresh = nearby.is_none() || settings.fresh;
     let mut derivatives = match nearby {
         Some(nearby) => nearby,
@@ -68,10 +69,10 @@ pub fn descend<P: LeastSquares>(
             if valley {
                 valleys += 1;
                 damping = settings.damping.least;
-            } else if precision == Precision::Exact || !settings.exact_at_end {
+            } else if precision == DerivativePrecision::Exact || !settings.exact_at_end {
                 break;
             }
-            precision = Precision::Exact;
+            precision = DerivativePrecision::Exact;
             derivatives = problem.derivatives(&point, precision)?;
             (fresh, least_gain) = (true, 0.0);
             continue;
@@ -86,7 +87,7 @@ pub fn descend<P: LeastSquares>(
             }
             taken += 1;
             if within_reach(objective) {
-                precision = Precision::Exact;
+                precision = DerivativePrecision::Exact;
             }
             derivatives = problem.derivatives(&point, precision)?;
             least_gain = 0.0;
@@ -209,7 +210,7 @@ impl Pace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Convergence, Damping, NormalEquations, Parameter, Transform};
+    use crate::{Convergence, NormalEquations, Parameter, StepDamping, Transform};
     use proptest::prelude::*;
     use std::cell::Cell;
 
@@ -245,7 +246,7 @@ mod tests {
             squares.sum()
         }
 
-        fn derivatives(&self, q: &[f64; 3], _: Precision) -> Option<Vec<[f64; 3]>> {
+        fn derivatives(&self, q: &[f64; 3], _: DerivativePrecision) -> Option<Vec<[f64; 3]>> {
             self.linearised.set(self.linearised.get() + 1);
             let at = |i: usize| {
                 let t = 0.1 * i as f64;
@@ -287,7 +288,7 @@ mod tests {
             (self.steep * (q[1] - q[0] * q[0])).powi(2) + (1.0 - q[0]).powi(2)
         }
 
-        fn derivatives(&self, q: &[f64; 2], _: Precision) -> Option<Vec<[f64; 2]>> {
+        fn derivatives(&self, q: &[f64; 2], _: DerivativePrecision) -> Option<Vec<[f64; 2]>> {
             Some(vec![[-2.0 * self.steep * q[0], self.steep], [-1.0, 0.0]])
         }
 
@@ -331,7 +332,7 @@ mod tests {
     #[test]
     fn a_curved_valley_is_followed_to_its_end_where_damped_steps_creep() {
         let problem = Bent { steep: 1e4 };
-        let damping = Damping { initial: 1e-8, decrease: 0.1, least: 1e-13, raised: 0.0, most: 1e7 };
+        let damping = StepDamping { initial: 1e-8, decrease: 0.1, least: 1e-13, raised: 0.0, most: 1e7 };
         let convergence = Convergence { gain: 1e-9, share: 0.0, floor: 0.0 };
         let end = |curved_valley: f64| {
             let settings = Settings { steps: 40, damping, convergence, curved_valley, ..Settings::default() };

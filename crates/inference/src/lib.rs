@@ -18,7 +18,7 @@
 //! * [`each`]: many fits on all threads.
 //!
 //! ```
-//! use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend};
+//! use jointscope_inference::{LeastSquares, NormalEquations, DerivativePrecision, Settings, descend};
 //!
 //! // y = exp(−q x) at three abscissae; q from a start far off.
 //! struct Decay;
@@ -32,7 +32,7 @@
 //!     fn objective(&self, q: &f64, _: &()) -> f64 {
 //!         [1.0, 2.0, 3.0].iter().map(|x: &f64| ((-0.5 * x).exp() - (-q * x).exp()).powi(2)).sum()
 //!     }
-//!     fn derivatives(&self, q: &f64, _: Precision) -> Option<[f64; 3]> {
+//!     fn derivatives(&self, q: &f64, _: DerivativePrecision) -> Option<[f64; 3]> {
 //!         Some([1.0, 2.0, 3.0].map(|x: f64| -x * (-q * x).exp()))
 //!     }
 //!     fn equations(&self, q: &f64, slopes: &[f64; 3], _: &()) -> NormalEquations {
@@ -70,8 +70,8 @@ pub use likelihood::QuadraticLikelihood;
 pub use noise::inflated_weight;
 pub use normal::NormalEquations;
 pub use parameter::{Parameter, Transform};
-pub use problem::{LeastSquares, Precision};
+pub use problem::{DerivativePrecision, LeastSquares};
 pub use products::{dot, weighted_products, whitened};
-pub use settings::{Convergence, Damping, Limit, Settings};
+pub use settings::{Convergence, Limit, Settings, StepDamping};
 pub use threads::{each, each_used_up};
 pub use uncertainty::{Covariance, autocorrelation, jackknife, variance_inflation};

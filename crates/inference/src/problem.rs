@@ -2,7 +2,7 @@
 
 /// How exactly derivatives are wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Precision {
+pub enum DerivativePrecision {
     /// Good enough to find the way: forward differences, say.
     Rough,
     /// Good enough to decide between nearly collinear parameters: central differences or closed forms.
@@ -30,7 +30,7 @@ pub trait LeastSquares {
     fn objective(&self, point: &Self::Point, weights: &Self::Weights) -> f64;
 
     /// Derivatives at a point; `None` where it has none.
-    fn derivatives(&self, point: &Self::Point, precision: Precision) -> Option<Self::Derivatives>;
+    fn derivatives(&self, point: &Self::Point, precision: DerivativePrecision) -> Option<Self::Derivatives>;
 
     /// The normal equations at a point, from derivatives taken there or nearby.
     fn equations(

@@ -2,7 +2,7 @@
 
 /// Damping of the steps, relative to each coordinate's own curvature.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Damping {
+pub struct StepDamping {
     /// To begin with.
     pub initial: f64,
     /// Factor after a step that lowered the objective.
@@ -63,7 +63,7 @@ pub struct Settings {
     /// Sets of derivatives at the most.
     pub derivatives: usize,
     /// Damping of the steps.
-    pub damping: Damping,
+    pub damping: StepDamping,
     /// When it has converged.
     pub convergence: Convergence,
     /// Derivatives serve for as long as a step gains this share of their first one's gain; `None` takes them anew for every step.
@@ -72,7 +72,7 @@ pub struct Settings {
     pub fresh: bool,
     /// Whether a fit may be called converged by derivatives that were taken elsewhere.
     pub trust_old: bool,
-    /// Whether the last steps use [`Precision::Exact`](crate::Precision::Exact) derivatives.
+    /// Whether the last steps use [`DerivativePrecision::Exact`](crate::DerivativePrecision::Exact) derivatives.
     pub exact_at_end: bool,
     /// Objective to be reached, for one fit among many.
     pub limit: Option<Limit>,
@@ -89,7 +89,7 @@ impl Default for Settings {
         Settings {
             steps: 60,
             derivatives: usize::MAX,
-            damping: Damping { initial: 1e-6, decrease: 0.1, least: 1e-15, raised: 0.0, most: 1e8 },
+            damping: StepDamping { initial: 1e-6, decrease: 0.1, least: 1e-15, raised: 0.0, most: 1e8 },
             convergence: Convergence { gain: 0.0, share: 1e-9, floor: 0.0 },
             reuse: None,
             fresh: false,

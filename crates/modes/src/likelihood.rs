@@ -9,7 +9,7 @@ mod poles;
 
 pub(crate) use poles::{Poles, Prior};
 
-use jointscope_inference::{LeastSquares, Precision, Settings, descend};
+use jointscope_inference::{DerivativePrecision, LeastSquares, Settings, descend};
 use jointscope_linalg::Cholesky;
 use num_complex::Complex64;
 
@@ -58,7 +58,7 @@ impl LeastSquares for Search<'_> {
     }
 
     /// In closed form, and found with the point.
-    fn derivatives(&self, _: &Point, _: Precision) -> Option<()> {
+    fn derivatives(&self, _: &Point, _: DerivativePrecision) -> Option<()> {
         Some(())
     }
 

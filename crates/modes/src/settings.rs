@@ -80,13 +80,13 @@ pub(crate) mod residual_terms {
 
 /// The search for the most likely poles.
 pub(crate) mod likelihood {
-    use jointscope_inference::{Convergence, Damping};
+    use jointscope_inference::{Convergence, StepDamping};
 
     /// Steps of the damped Gauss–Newton search, at most.
     pub(crate) const MOST_STEPS: usize = 40;
     /// Damping of its steps.
-    pub(crate) const STEP_DAMPING: Damping =
-        Damping { initial: 1e-4, decrease: 0.1, least: 1e-12, raised: 1e-4, most: 1e8 };
+    pub(crate) const STEP_DAMPING: StepDamping =
+        StepDamping { initial: 1e-4, decrease: 0.1, least: 1e-12, raised: 1e-4, most: 1e8 };
     /// χ² falls by less than this: done. Noise alone moves it by far more.
     pub(crate) const CONVERGED: Convergence = Convergence { gain: 1e-3, share: 0.0, floor: 0.0 };
     /// Half-widths that a pole moves by in a step, at most.

@@ -163,13 +163,13 @@ pub(crate) mod search {
 
 /// The fit of a hypothesis. A simulation costs seconds, its derivatives many of them.
 pub(crate) mod fit {
-    use jointscope_inference::{Convergence, Damping};
+    use jointscope_inference::{Convergence, StepDamping};
 
     /// Steps at the most.
     pub(crate) const MOST_STEPS: usize = 100;
     /// Damping of the steps.
-    pub(crate) const STEP_DAMPING: Damping =
-        Damping { initial: 1e-3, decrease: 0.1, least: 1e-9, raised: 0.0, most: 1e3 };
+    pub(crate) const STEP_DAMPING: StepDamping =
+        StepDamping { initial: 1e-3, decrease: 0.1, least: 1e-9, raised: 0.0, most: 1e3 };
     /// When it has converged: a tenth in χ² is no gain.
     pub(crate) const CONVERGED: Convergence = Convergence { gain: 0.1, share: 2e-5, floor: 0.0 };
     /// Derivatives are taken anew as seldom as a twentieth of their first gain allows.
@@ -287,11 +287,11 @@ pub(crate) mod level_model {
 
 /// Laws fitted to the levels.
 pub(crate) mod level_fit {
-    use jointscope_inference::Damping;
+    use jointscope_inference::StepDamping;
 
     /// Damping of the steps.
-    pub(crate) const STEP_DAMPING: Damping =
-        Damping { initial: 1e-3, decrease: 0.2, least: 1e-12, raised: 0.0, most: 1e8 };
+    pub(crate) const STEP_DAMPING: StepDamping =
+        StepDamping { initial: 1e-3, decrease: 0.2, least: 1e-12, raised: 0.0, most: 1e8 };
     /// Step of the differences, relative to each parameter's scale.
     pub(crate) const DIFFERENCE: f64 = 1e-5;
     /// Scale of the logarithm of the gain.

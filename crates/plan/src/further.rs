@@ -11,7 +11,7 @@ use crate::plan::PlanOptions;
 use crate::planned_test::PlannedTest;
 use jointscope_diagnosis::{Hypothesis, Linearisation, Observation, with_idle_points_exact};
 use jointscope_fixture::Fixture;
-use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend, each};
+use jointscope_inference::{DerivativePrecision, LeastSquares, NormalEquations, Settings, descend, each};
 use jointscope_spectra::FrfPair;
 use jointscope_wording::effect_name;
 use num_complex::Complex64;
@@ -118,7 +118,7 @@ impl LeastSquares for Problem<'_> {
         self.observation.chi2(&at.predicted) + known
     }
 
-    fn derivatives(&self, at: &At, _: Precision) -> Option<Linearisation> {
+    fn derivatives(&self, at: &At, _: DerivativePrecision) -> Option<Linearisation> {
         Some(Linearisation::of(&at.hypothesis, self.observation))
     }
 

@@ -5,7 +5,7 @@ use crate::objective::{Tolerance, objective, values};
 use jointscope_diagnosis::Observation;
 use jointscope_fixture::{Fixture, ParameterRange};
 use jointscope_inference::{
-    Convergence, Damping, Descent, LeastSquares, NormalEquations, Precision, Settings, descend,
+    Convergence, DerivativePrecision, Descent, LeastSquares, NormalEquations, Settings, StepDamping, descend,
 };
 use jointscope_rig::{Instrument, frfs};
 use num_complex::Complex64;
@@ -29,7 +29,7 @@ const DIFFERENCE: f64 = 2e-3;
 const SETTINGS: Settings = Settings {
     steps: 12,
     derivatives: usize::MAX,
-    damping: Damping { initial: 0.0, decrease: 0.0, least: 0.0, raised: 1e-3, most: 10.0 },
+    damping: StepDamping { initial: 0.0, decrease: 0.0, least: 0.0, raised: 1e-3, most: 10.0 },
     convergence: Convergence { gain: 1e-2, share: 0.0, floor: 0.0 },
     reuse: Some(0.0),
     fresh: false,
@@ -89,7 +89,7 @@ impl LeastSquares for Neighbourhood<'_> {
     }
 
     /// Central differences by coordinate; zeros where it cannot be moved.
-    fn derivatives(&self, place: &Place, _: Precision) -> Option<Vec<Vec<Complex64>>> {
+    fn derivatives(&self, place: &Place, _: DerivativePrecision) -> Option<Vec<Vec<Complex64>>> {
         let count = self.coordinates.len();
         let at = |m: usize, step: f64| {
             let mut steps = vec![0.0; count];

@@ -10,7 +10,8 @@ use crate::settings::fit::{
     CONVERGED, CONVERGED_SHARE, CREEPS, CURVED_VALLEY, MOST_RESUMPTIONS, MOST_STEPS, REUSE, SIGNAL_AS_NOISE,
 };
 use jointscope_inference::{
-    Convergence, Covariance, Damping, LeastSquares, NormalEquations, Parameter, Precision, Settings, descend,
+    Convergence, Covariance, DerivativePrecision, LeastSquares, NormalEquations, Parameter, Settings,
+    StepDamping, descend,
 };
 use jointscope_tolerances::{Tolerance, moved};
 use num_complex::Complex64;
@@ -297,7 +298,7 @@ impl<'a> Problem<'a> {
         let floor = self.test.setup.recorded.degrees() as f64;
         let settings = Settings {
             steps,
-            damping: Damping { initial: 1e-6, decrease: 0.03, least: 1e-15, raised: 0.0, most: 1e8 },
+            damping: StepDamping { initial: 1e-6, decrease: 0.03, least: 1e-15, raised: 0.0, most: 1e8 },
             convergence: Convergence { gain: CONVERGED, share: CONVERGED_SHARE, floor },
             reuse: Some(REUSE),
             trust_old: true,
@@ -347,7 +348,7 @@ impl LeastSquares for Problem<'_> {
         at.objective
     }
 
-    fn derivatives(&self, at: &Point, _: Precision) -> Option<Columns> {
+    fn derivatives(&self, at: &Point, _: DerivativePrecision) -> Option<Columns> {
         self.other_columns(at)
     }
 

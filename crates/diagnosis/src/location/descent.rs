@@ -4,7 +4,9 @@ use super::Site;
 use super::problem::{Iterate, Modelled, Parameters, Problem};
 use super::tangent::Tangent;
 use crate::Hypothesis;
-use jointscope_inference::{Convergence, LeastSquares, NormalEquations, Precision, Settings, descend};
+use jointscope_inference::{
+    Convergence, DerivativePrecision, LeastSquares, NormalEquations, Settings, descend,
+};
 
 /// A place fitted with given weights.
 struct Weighted<'a> {
@@ -25,7 +27,7 @@ impl LeastSquares for Weighted<'_> {
         self.problem.objective(at, self.weights)
     }
 
-    fn derivatives(&self, at: &Iterate, _: Precision) -> Option<Tangent> {
+    fn derivatives(&self, at: &Iterate, _: DerivativePrecision) -> Option<Tangent> {
         self.problem.tangent(at, false)
     }
 

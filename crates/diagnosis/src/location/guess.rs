@@ -12,7 +12,7 @@ use super::pattern::Inversion;
 use crate::settings::LawSettings;
 use crate::settings::location::differences::PARAMETER_STEP;
 use crate::settings::location::guess::CONVERGENCE;
-use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend};
+use jointscope_inference::{DerivativePrecision, LeastSquares, NormalEquations, Settings, descend};
 use num_complex::Complex64;
 
 /// A site's scalars ready for laws.
@@ -178,7 +178,7 @@ impl LeastSquares for Guessing<'_> {
         at.left
     }
 
-    fn derivatives(&self, _: &Guess, _: Precision) -> Option<()> {
+    fn derivatives(&self, _: &Guess, _: DerivativePrecision) -> Option<()> {
         Some(())
     }
 

@@ -2,7 +2,7 @@
 
 use super::pattern::RationalResponse;
 use crate::settings::location::scalar::{DAMPING, ENOUGH, MOST_STEPS, STARTS};
-use jointscope_inference::{LeastSquares, Precision, Settings, descend};
+use jointscope_inference::{DerivativePrecision, LeastSquares, Settings, descend};
 use num_complex::Complex64;
 
 /// The scalar that fits the line's FRFs best; zero where the pattern vanishes.
@@ -69,7 +69,7 @@ impl LeastSquares for Line<'_> {
         terms.map(|((response, measured), weight)| weight * (measured - response.at(*z)).norm_sqr()).sum()
     }
 
-    fn derivatives(&self, _: &Complex64, _: Precision) -> Option<()> {
+    fn derivatives(&self, _: &Complex64, _: DerivativePrecision) -> Option<()> {
         Some(())
     }
 

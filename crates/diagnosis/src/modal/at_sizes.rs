@@ -5,7 +5,7 @@ use crate::modal::descent::{Descent, settings};
 use crate::modal::fit::ModalFit;
 use crate::modal::prior::Prior;
 use crate::modal::problem::{Iterate, Problem};
-use jointscope_inference::{Covariance, LeastSquares, Precision, descend};
+use jointscope_inference::{Covariance, DerivativePrecision, LeastSquares, descend};
 use jointscope_linalg::Cholesky;
 use jointscope_model_error::ErrorSizes;
 
@@ -23,7 +23,7 @@ impl Problem<'_> {
             residual: fit.residual.clone(),
         };
         let point = descend(&descent, start, Some(fit.slopes.clone()), &settings(usize::MAX))?.point;
-        let slopes = descent.derivatives(&point, Precision::Rough)?;
+        let slopes = descent.derivatives(&point, DerivativePrecision::Rough)?;
         let equations = descent.equations(&point, &slopes, &());
         let order = equations.order;
         let inverse = Cholesky::of(order, &equations.information).map(|factor| factor.inverse());

@@ -3,7 +3,7 @@
 use crate::modal::prior::Prior;
 use crate::modal::problem::{Iterate, PairedModes, Problem};
 use crate::settings::modal::descent::{CONVERGENCE, CURVED_VALLEY, DAMPING, DERIVATIVES, MOST_STEPS, REUSE};
-use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend, dot};
+use jointscope_inference::{DerivativePrecision, LeastSquares, NormalEquations, Settings, descend, dot};
 use jointscope_linalg::Cholesky;
 use jointscope_model_error::{ErrorSizes, Linear, ModelEvidence};
 
@@ -77,7 +77,7 @@ impl LeastSquares for Descent<'_> {
         self.whitened(&point.residual).iter().map(|v| v * v).sum::<f64>() + departures.sum::<f64>()
     }
 
-    fn derivatives(&self, point: &Iterate, _: Precision) -> Option<Vec<Vec<f64>>> {
+    fn derivatives(&self, point: &Iterate, _: DerivativePrecision) -> Option<Vec<Vec<f64>>> {
         self.problem.slopes_at(point, self.paired, self.priors)
     }
 
@@ -134,7 +134,7 @@ impl Problem<'_> {
         let factor = Cholesky::of(paired.comparison.count(), &paired.comparison.covariance(sizes))?;
         let descent = Descent { problem: self, paired, factor, priors };
         let point = descend(&descent, start, Some(derivatives), &settings(DERIVATIVES))?.point;
-        let derivatives = descent.derivatives(&point, Precision::Rough)?;
+        let derivatives = descent.derivatives(&point, DerivativePrecision::Rough)?;
         let promised_there = descent.promised(&point, &descent.equations(&point, &derivatives, &()));
         let (linear, evidence) =
             self.evidence(&point, priors, &derivatives, (&paired.comparison, Some(sizes)))?;

@@ -1,6 +1,6 @@
 //! Numbers of the map of places with no law assumed: what a caller may set, and what each of its steps needs besides.
 
-use jointscope_inference::{Convergence, Damping};
+use jointscope_inference::{Convergence, StepDamping};
 
 /// The map of places with no law assumed.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,7 +25,7 @@ pub struct LocationSettings {
     /// Convergence at the end.
     pub end: Convergence,
     /// Damping of the steps.
-    pub damping: Damping,
+    pub damping: StepDamping,
     /// Places that leave more than the first times the best and the second besides, with inflated noise, are fitted no further …
     pub promising: (f64, f64),
     /// … and come after all others: what they leave counts this many times.
@@ -78,7 +78,7 @@ impl Default for LocationSettings {
             followed: 3.0,
             near: Convergence { gain: 1.0, share: 0.03, floor: 0.0 },
             end: Convergence { gain: 0.1, share: 3e-4, floor: 0.0 },
-            damping: Damping { initial: 1e-6, decrease: 0.1, least: 1e-9, raised: 1e-3, most: 1e3 },
+            damping: StepDamping { initial: 1e-6, decrease: 0.1, least: 1e-9, raised: 1e-3, most: 1e3 },
             promising: (300.0, 1000.0),
             hopeless: 1e6,
             rival: 1.5,
@@ -114,11 +114,11 @@ pub(crate) mod sites {
 
 /// A line's scalar that does not enter linearly.
 pub(crate) mod scalar {
-    use jointscope_inference::Damping;
+    use jointscope_inference::StepDamping;
 
     /// Damping of the steps: none but after one that has failed.
-    pub(crate) const DAMPING: Damping =
-        Damping { initial: 0.0, decrease: 0.0, least: 0.0, raised: 1.0, most: 1e2 };
+    pub(crate) const DAMPING: StepDamping =
+        StepDamping { initial: 0.0, decrease: 0.0, least: 0.0, raised: 1.0, most: 1e2 };
     /// Newton steps from a start, at most.
     pub(crate) const MOST_STEPS: usize = 12;
     /// Starts besides its neighbour's and zero.

@@ -47,7 +47,7 @@ pub(crate) mod differences {
 
 /// Descents at given sizes of the error.
 pub(crate) mod descent {
-    use jointscope_inference::{Convergence, Damping};
+    use jointscope_inference::{Convergence, StepDamping};
 
     /// Decrease of χ² that a step promises below which a fit stands where it belongs: what one parameter gains by chance.
     pub(crate) const STANDS_STILL: f64 = 1.0;
@@ -56,8 +56,8 @@ pub(crate) mod descent {
     /// Gauss–Newton steps, at most.
     pub(crate) const MOST_STEPS: usize = 40;
     /// Damping of the steps, to begin with and as they succeed or fail.
-    pub(crate) const DAMPING: Damping =
-        Damping { initial: 1e-6, decrease: 0.1, least: 1e-9, raised: 1e-3, most: 1e5 };
+    pub(crate) const DAMPING: StepDamping =
+        StepDamping { initial: 1e-6, decrease: 0.1, least: 1e-9, raised: 1e-3, most: 1e5 };
     /// Decrease of the objective below which a descent ends, a fifth of that at which the fit stands still, and the same as a share of the objective.
     pub(crate) const CONVERGENCE: Convergence =
         Convergence { gain: 0.2 * STANDS_STILL, share: 1e-3, floor: 0.0 };

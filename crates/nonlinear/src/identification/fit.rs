@@ -3,7 +3,9 @@
 use super::hypothesis::Hypothesis;
 use super::misfit::{Jacobian, Residuals, View, sum_of_squares};
 use crate::settings::fit::{CONVERGED, MOST_STEPS, REUSE, STEP_DAMPING};
-use jointscope_inference::{Covariance, LeastSquares, NormalEquations, Precision, Settings, descend};
+use jointscope_inference::{
+    Covariance, DerivativePrecision, LeastSquares, NormalEquations, Settings, descend,
+};
 
 /// A hypothesis at which likelihood and prior are largest.
 #[derive(Debug, Clone)]
@@ -33,7 +35,7 @@ impl Fit {
     /// A hypothesis as it is, with what a view tells of it.
     pub(super) fn at(view: &View, slopes: &View, hypothesis: &Hypothesis) -> Option<Self> {
         let point = Iterate::at(view, hypothesis.clone())?;
-        let derivatives = Problem { view, slopes }.derivatives(&point, Precision::Rough)?;
+        let derivatives = Problem { view, slopes }.derivatives(&point, DerivativePrecision::Rough)?;
         Some(Self::with(point, derivatives))
     }
 
@@ -84,7 +86,7 @@ impl LeastSquares for Problem<'_> {
         point.objective
     }
 
-    fn derivatives(&self, point: &Iterate, _: Precision) -> Option<Jacobian> {
+    fn derivatives(&self, point: &Iterate, _: DerivativePrecision) -> Option<Jacobian> {
         match std::ptr::eq(self.view, self.slopes) {
             true => self.view.jacobian(&point.hypothesis, &point.residuals),
             false => self.slopes.jacobian(&point.hypothesis, &self.slopes.residuals(&point.hypothesis)?),

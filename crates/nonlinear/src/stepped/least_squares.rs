@@ -2,7 +2,7 @@
 
 use crate::identification::misfit::products;
 use crate::settings::level_fit::{DIFFERENCE, STEP_DAMPING};
-use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend, dot};
+use jointscope_inference::{DerivativePrecision, LeastSquares, NormalEquations, Settings, descend, dot};
 
 /// What residuals a set of parameters leaves; `None` where they are not finite.
 pub(crate) type Residual<'a> = &'a dyn Fn(&[f64]) -> Option<Vec<f64>>;
@@ -28,7 +28,7 @@ pub(crate) fn minimum(residual: Residual, start: &[f64], scale: &[f64]) -> Optio
 pub(crate) fn deviations(residual: Residual, x: &[f64], scale: &[f64], degrees: usize) -> Option<Vec<f64>> {
     let problem = Problem { residual, scale };
     let point = problem.at(x.to_vec())?;
-    let derivatives = problem.derivatives(&point, Precision::Exact)?;
+    let derivatives = problem.derivatives(&point, DerivativePrecision::Exact)?;
     let covariance = problem.equations(&point, &derivatives, &()).covariance()?;
     let variance = point.cost / degrees as f64;
     let std = |i: usize| (covariance.at(i, i) * variance).sqrt() * scale[i];
@@ -61,7 +61,7 @@ impl LeastSquares for Problem<'_> {
         point.cost
     }
 
-    fn derivatives(&self, point: &Iterate, _: Precision) -> Option<Vec<Vec<f64>>> {
+    fn derivatives(&self, point: &Iterate, _: DerivativePrecision) -> Option<Vec<Vec<f64>>> {
         let column = |p: usize| {
             let moved = |sign: f64| {
                 let mut to = point.x.clone();
