@@ -1,13 +1,13 @@
 //! How probable recorded features are at given sizes of a model's error: ln N(d; 0, C), with d the features less those of the model and C = S(τ) + J·Jᵀ their covariance, by errors of the
 //! model and of the recording and by the parameters of a linear model.
 
-use crate::errors::{Comparison, ErrorSizes};
+use crate::errors::{ErrorSizes, SharedFeatures};
 use jointscope_linalg::Cholesky;
 use std::f64::consts::TAU;
 
 /// The density at many sizes of the error: what does not depend on them is formed once.
 pub(crate) struct Density<'a> {
-    comparison: &'a Comparison,
+    comparison: &'a SharedFeatures,
     difference: &'a [f64],
     /// Noise and J·Jᵀ, lower triangle.
     fixed: Vec<f64>,
@@ -18,7 +18,7 @@ pub(crate) struct Density<'a> {
 
 impl<'a> Density<'a> {
     /// Of these differences, which each of the parameters moves by its slopes, J's columns.
-    pub(crate) fn of(difference: &'a [f64], slopes: &[Vec<f64>], comparison: &'a Comparison) -> Self {
+    pub(crate) fn of(difference: &'a [f64], slopes: &[Vec<f64>], comparison: &'a SharedFeatures) -> Self {
         let n = comparison.count();
         let mut fixed = comparison.noise.to_vec();
         for slope in slopes {

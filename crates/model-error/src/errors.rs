@@ -125,7 +125,7 @@ impl From<&ErrorSizes> for SizePrior {
 
 /// The features that a recording and a model both have, and what each kind of error makes of them.
 #[derive(Debug, Clone)]
-pub struct Comparison {
+pub struct SharedFeatures {
     /// Places of the compared features among the recording's.
     pub(crate) places: Vec<usize>,
     /// Covariance of the recorded features.
@@ -203,7 +203,7 @@ fn add_gains(
     }
 }
 
-impl Comparison {
+impl SharedFeatures {
     /// Of the modes that are paired, with the model's modes and shapes.
     pub fn new(
         recorded: &RecordedModes,
@@ -256,7 +256,15 @@ impl Comparison {
         add_residual_terms(&mut kinds, recorded, (n, first));
         add_gains(&mut kinds[GAIN], recorded, (pairing, modelled), (n, first));
         kinds[DAMPING] = of_damping(n, frfs, &turned);
-        Comparison { places, noise, turned, distributed: Vec::new(), first_residue: 2 * matched, kinds, both }
+        SharedFeatures {
+            places,
+            noise,
+            turned,
+            distributed: Vec::new(),
+            first_residue: 2 * matched,
+            kinds,
+            both,
+        }
     }
 
     /// The same where nobody knows how the structure's damping is distributed: whether as these `shapes` of the paired modes have it, or so that it turns no phases.
@@ -296,11 +304,11 @@ impl Comparison {
     }
 
     /// Whether errors of the damping, of the size `damping`, and another distribution of it make as much of the quadrature of the same modes here as there, but for less than noise does.
-    pub fn damps_like(&self, other: &Comparison, damping: f64) -> bool {
+    pub fn damps_like(&self, other: &SharedFeatures, damping: f64) -> bool {
         let (n, first) = (self.count(), self.first_residue);
         let noise = |k: usize| self.noise[(first + 2 * k + 1) * (n + 1)].sqrt();
         let apart = |(k, (a, b)): (usize, (&f64, &f64))| damping * (a - b).abs() > noise(k);
-        let part = |of: &Comparison, k: usize| of.distributed.get(k).map_or(0.0, |(_, value)| *value);
+        let part = |of: &SharedFeatures, k: usize| of.distributed.get(k).map_or(0.0, |(_, value)| *value);
         let otherwise = |k: usize| (part(self, k) - part(other, k)).abs() > noise(k);
         self.turned.len() == other.turned.len()
             && !self.turned.iter().zip(&other.turned).enumerate().any(apart)

@@ -4,7 +4,7 @@
 //! ln Z = max over τ of [ln N(d; 0, S(τ) + J·Jᵀ) − ½ Σ (τ/s)²]. A size that is stated is taken as it is.
 
 use crate::density::Density;
-use crate::errors::{Comparison, ErrorSizes, KINDS, SizePrior};
+use crate::errors::{ErrorSizes, KINDS, SharedFeatures, SizePrior};
 use crate::most_probable::{MostProbable, ln_prior};
 use crate::settings::evidence::{
     LEAST_OF_INTERVAL, LEAST_REACH, NEXT_TO_NOTHING, REACH_OF_INTERVAL, REACH_OF_MEAN, SIZES_OF_INTERVAL,
@@ -34,18 +34,18 @@ pub struct ModelEvidence {
 
 impl Linear {
     /// ln N(difference; 0, S + J·Jᵀ), nats; `None` where that covariance is not positive definite.
-    pub fn ln_density(&self, comparison: &Comparison, sizes: &ErrorSizes) -> Option<f64> {
+    pub fn ln_density(&self, comparison: &SharedFeatures, sizes: &ErrorSizes) -> Option<f64> {
         self.density(comparison).ln(sizes)
     }
 
-    fn density<'a>(&'a self, comparison: &'a Comparison) -> Density<'a> {
+    fn density<'a>(&'a self, comparison: &'a SharedFeatures) -> Density<'a> {
         Density::of(&self.difference, &self.slopes, comparison)
     }
 
     /// What [`Linear::evidence`] maximises over the sizes, at these: ln of the density and of the sizes' prior, without its normalisation.
     pub fn ln_evidence_at(
         &self,
-        comparison: &Comparison,
+        comparison: &SharedFeatures,
         prior: impl Into<SizePrior>,
         sizes: &ErrorSizes,
     ) -> Option<f64> {
@@ -57,7 +57,7 @@ impl Linear {
     /// most probable one, and intervals must know it.
     pub fn mean_sizes(
         &self,
-        comparison: &Comparison,
+        comparison: &SharedFeatures,
         prior: impl Into<SizePrior>,
         best: &ModelEvidence,
     ) -> ErrorSizes {
@@ -88,7 +88,7 @@ impl Linear {
     /// most probable size is next to nothing.
     pub fn size_interval(
         &self,
-        comparison: &Comparison,
+        comparison: &SharedFeatures,
         prior: impl Into<SizePrior>,
         best: &ModelEvidence,
         kind: usize,
@@ -134,7 +134,7 @@ impl Linear {
     /// The evidence at the most probable sizes, whose priors have the scales `prior`; searched from `start`, or over five decades of each. What is stated stays.
     pub fn evidence(
         &self,
-        comparison: &Comparison,
+        comparison: &SharedFeatures,
         prior: impl Into<SizePrior>,
         start: Option<&ErrorSizes>,
     ) -> Option<ModelEvidence> {

@@ -11,7 +11,7 @@ use crate::basis::{MASS_LINE, Pole, TERMS, UPPER, row};
 use crate::outline::Outline;
 use crate::projection::Projection;
 use crate::recorded::{RecordedMode, RecordedModes};
-use crate::recording::{Recording, resolved_from};
+use crate::recording::{WeightedFrfs, resolved_from};
 use crate::settings::free_fit::{
     CONVERGED, LEFT_BY_MISSED_POLE, LEFT_BY_OUTER_POLE, MISSED_DAMPING_RATIO, MISSED_WITHIN_LINES,
     MOST_DAMPING_RATIO, MOST_DAMPING_STEP, MOST_FREQUENCY_STEP, MOST_STEPS, POOR, STEP_SHARES, VAGUE_DAMPING,
@@ -54,19 +54,19 @@ struct FrfFit {
 
 impl FreeFit {
     /// Whether more than noise is left.
-    pub(crate) fn is_poor(&self, recording: Recording) -> bool {
+    pub(crate) fn is_poor(&self, recording: WeightedFrfs) -> bool {
         self.chi2_per_dof(recording) > POOR
     }
 
     /// Whether the residual terms that `more` has are worth their number by Akaike's criterion. What too few of them leave biases the poles
     /// long before χ² as a whole looks poor.
-    pub(crate) fn lacks(&self, more: &FreeFit, recording: Recording) -> bool {
+    pub(crate) fn lacks(&self, more: &FreeFit, recording: WeightedFrfs) -> bool {
         let coefficients = 2.0 * ((more.terms - self.terms) * self.fits.len()) as f64;
         self.chi2 - more.chi2 > 2.0 * coefficients * more.chi2_per_dof(recording).max(1.0)
     }
 
     /// With one pole more outside the band, where the fit is poor without it and better for it.
-    pub(crate) fn with(self, recording: Recording, pole: Pole) -> Self {
+    pub(crate) fn with(self, recording: WeightedFrfs, pole: Pole) -> Self {
         if !self.is_poor(recording) {
             return self;
         }
@@ -78,7 +78,7 @@ impl FreeFit {
 
     /// With a pole that a model has, in the band or below it, where that is worth its number of unknowns by Akaike's criterion: what it takes from χ² as a whole may
     /// be little, and without it mass lines are off by ten of their deviations.
-    pub(crate) fn with_expected(self, recording: Recording, pole: Pole) -> Self {
+    pub(crate) fn with_expected(self, recording: WeightedFrfs, pole: Pole) -> Self {
         let (inside, outside) = self.poles.split_at(self.inside);
         let (mut inside, mut outside) = (inside.to_vec(), outside.to_vec());
         let is_below = pole.omega < TAU * recording.frfs.lines().hz()[0];
@@ -89,7 +89,7 @@ impl FreeFit {
 
     /// With a pole more in the band, where the fit misses most: two modes close to each other, seen on few lines, pass for one. It is kept where little is left with it of what was missed, and if
     /// the lines resolve it: a tone on one line is no mode.
-    pub(crate) fn with_missed(self, recording: Recording) -> Self {
+    pub(crate) fn with_missed(self, recording: WeightedFrfs) -> Self {
         if !self.is_poor(recording) {
             return self;
         }
@@ -111,7 +111,7 @@ impl FreeFit {
     }
 
     /// Whether another fit of the same recording is better by Akaike's criterion.
-    pub(crate) fn is_worse(&self, other: &FreeFit, recording: Recording) -> bool {
+    pub(crate) fn is_worse(&self, other: &FreeFit, recording: WeightedFrfs) -> bool {
         let unknowns = self.unknowns() as f64 - other.unknowns() as f64;
         let richer = if unknowns > 0.0 { self } else { other };
         self.chi2 - other.chi2 + 2.0 * unknowns * richer.chi2_per_dof(recording).max(1.0) > 0.0
@@ -121,14 +121,14 @@ impl FreeFit {
         2 * self.poles.len() + self.fits.len() * 2 * (self.poles.len() + self.terms)
     }
 
-    fn chi2_per_dof(&self, recording: Recording) -> f64 {
+    fn chi2_per_dof(&self, recording: WeightedFrfs) -> f64 {
         let degrees = 2.0 * recording.weights.iter().filter(|w| **w > 0.0).count() as f64;
         self.chi2 / (degrees - self.unknowns() as f64).max(1.0)
     }
 
     /// With the poles that Gauss–Newton steps lead to.
     pub(crate) fn converged(
-        recording: Recording,
+        recording: WeightedFrfs,
         inside: Vec<Pole>,
         outside: &[Pole],
         terms: usize,
@@ -172,7 +172,7 @@ impl FreeFit {
     }
 
     /// At given poles.
-    fn at(recording: Recording, poles: Vec<Pole>, inside: usize, terms: usize) -> Option<Self> {
+    fn at(recording: WeightedFrfs, poles: Vec<Pole>, inside: usize, terms: usize) -> Option<Self> {
         let omegas: Vec<f64> = recording.frfs.lines().omegas().collect();
         let reference = *omegas.last()?;
         let rows: Vec<Vec<Complex64>> =
@@ -228,14 +228,14 @@ impl FreeFit {
     }
 
     /// What it says of the modes in the band.
-    pub(crate) fn recorded_modes(&self, recording: Recording) -> Option<RecordedModes> {
+    pub(crate) fn recorded_modes(&self, recording: WeightedFrfs) -> Option<RecordedModes> {
         self.recorded_modes_from(recording, resolved_from(recording.frfs.lines().hz()))
     }
 
     /// The same where modes above a frequency, Hz, are told from residual terms.
     pub(crate) fn recorded_modes_from(
         &self,
-        recording: Recording,
+        recording: WeightedFrfs,
         resolved_from: f64,
     ) -> Option<RecordedModes> {
         let lines = recording.frfs.lines();
@@ -372,7 +372,7 @@ mod tests {
         let weights = vec![2.0 / deviation.powi(2); values.len()];
         let pairs = vec![FrfPair::transverse("2", "1")];
         let frfs = FrfSet::new(lines, FrfForm::Accelerance, pairs, values).unwrap();
-        let recording = Recording { frfs: &frfs, weights: &weights };
+        let recording = WeightedFrfs { frfs: &frfs, weights: &weights };
         let alone = || FreeFit::converged(recording, vec![strong], &[], 2).unwrap();
         let found = alone().with_expected(recording, pole(6.3));
         assert_eq!(found.inside, 2);
@@ -407,7 +407,7 @@ mod tests {
         let pole = |hz: f64, damping_ratio: f64| Pole { omega: TAU * hz, damping_ratio };
         let [low, missed, near] = [pole(51.4, 0.007), pole(139.4, 0.0134), pole(148.2, 0.006)];
         let (frfs, weights) = eight(&[low, missed, near], None);
-        let recording = Recording { frfs: &frfs, weights: &weights };
+        let recording = WeightedFrfs { frfs: &frfs, weights: &weights };
         let alone = FreeFit::converged(recording, vec![low, near], &[], 5).unwrap();
         assert!(alone.chi2_per_dof(recording) > 100.0);
         let found = alone.with_missed(recording);
@@ -420,7 +420,7 @@ mod tests {
         );
         for line in [20, 55, 100] {
             let (frfs, weights) = eight(&[low, near], Some(line));
-            let recording = Recording { frfs: &frfs, weights: &weights };
+            let recording = WeightedFrfs { frfs: &frfs, weights: &weights };
             let alone = FreeFit::converged(recording, vec![low, near], &[], 5).unwrap();
             assert!(alone.is_poor(recording));
             assert_eq!(alone.with_missed(recording).inside, 2, "a tone at {} Hz", frfs.lines().hz()[line]);

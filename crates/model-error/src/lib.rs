@@ -12,7 +12,7 @@
 //!    recorded, and takes residues by contour integrals; [`ModelledModes::near`] sets out from poles that are known. [`modes_within`] counts the modes in a band.
 //! 3. **Pairing.** [`Pairing::of`] tells which mode of the model is which of the recording, by frequency and shape, and what modes without a partner cost.
 //! 4. **Error.** [`ErrorSizes`] are relative standard deviations by kind: natural frequency, damping ratio, shape (in phase and in quadrature), mass line, upper residual.
-//!    [`Comparison`] makes the covariance S = noise + Σ size²·kind of them, with the model's [`Shapes`].
+//!    [`SharedFeatures`] makes the covariance S = noise + Σ size²·kind of them, with the model's [`Shapes`].
 //! 5. **Evidence.** [`Linear::evidence`] gives the evidence of a model that is linear in its parameters, with the sizes at their most probable ([`ModelEvidence`]);
 //!    [`Linear::mean_sizes`] their root mean squares.
 //!
@@ -22,7 +22,7 @@
 //! ```
 //! use jointscope_fixture::Fixture;
 //! use jointscope_lumped::{Instrument, synthesize};
-//! use jointscope_model_error::{Comparison, ErrorSizes, Expected, Linear, ModelledModes, Pairing, RecordedModes, Recording, Shapes};
+//! use jointscope_model_error::{SharedFeatures, ErrorSizes, Expected, Linear, ModelledModes, Pairing, RecordedModes, WeightedFrfs, Shapes};
 //! use jointscope_modes::ModesOptions;
 //! use jointscope_spectra::{FrfPair, SpectralLines};
 //!
@@ -41,7 +41,7 @@
 //! let weights: Vec<f64> = variance.iter().map(|v| 2.0 / v).collect(); // 1/variance of the real part, and of the imaginary part
 //! let frfs = frfs.with_variance(variance)?;
 //!
-//! let recording = Recording { frfs: &frfs, weights: &weights };
+//! let recording = WeightedFrfs { frfs: &frfs, weights: &weights };
 //! let recorded = RecordedModes::of(recording, &ModesOptions::default(), |_| Expected::default()).ok_or("no modes")?;
 //! let natural = (5e6_f64 / 1.2).sqrt();
 //! assert!((recorded.modes[0].pole.omega / natural - 1.0).abs() < 1e-6);
@@ -54,7 +54,7 @@
 //! // As an error of the model, unexplained, that is what its size says.
 //! let pairing = Pairing::of(&recorded, &modelled);
 //! let shapes = Shapes::of(&model, &recorded, &modelled.poles()).ok_or("no shapes")?;
-//! let comparison = Comparison::new(&recorded, &pairing, &modelled, &shapes);
+//! let comparison = SharedFeatures::new(&recorded, &pairing, &modelled, &shapes);
 //! let difference = comparison.residual(&recorded, &recorded.features(), &modelled, &pairing);
 //! let linear = Linear { difference, slopes: Vec::new() };
 //! let evidence = linear.evidence(&comparison, &ErrorSizes::default(), None).ok_or("no evidence")?;
@@ -82,13 +82,15 @@ mod shapes;
 mod structural;
 
 pub use basis::Pole;
-pub use errors::{Comparison, DAMPING, ErrorSizes, FREQUENCY, GAIN, KINDS, SHAPE, SizePrior, UPPER_RESIDUAL};
+pub use errors::{
+    DAMPING, ErrorSizes, FREQUENCY, GAIN, KINDS, SHAPE, SharedFeatures, SizePrior, UPPER_RESIDUAL,
+};
 pub use evidence::{Linear, ModelEvidence};
 pub use expected::Expected;
 pub use matching::Pairing;
 pub use modelled::ModelledModes;
 pub use poles::{ModelledMode, modes_within};
 pub use recorded::{RecordedMode, RecordedModes};
-pub use recording::Recording;
+pub use recording::WeightedFrfs;
 pub use shapes::Shapes;
 pub use structural::Structural;

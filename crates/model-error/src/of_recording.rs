@@ -4,7 +4,7 @@ use crate::basis::{Pole, TERMS};
 use crate::expected::Expected;
 use crate::free_fit::FreeFit;
 use crate::recorded::RecordedModes;
-use crate::recording::{Recording, resolved_from};
+use crate::recording::{WeightedFrfs, resolved_from};
 use crate::settings::recorded::{
     ABOVE_BAND, BELOW_BAND, CLEAR_DAMPING, CLEAR_FREQUENCY, CLEAR_LINES, DAMPING_RATIO_ABOVE,
     DAMPING_RATIO_BELOW, EXPECTED_WITHIN, MOST_LINES_LEFT_OUT, NARROW, RESOLVED_LINES,
@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 
 /// The free fit that is begun with poles in and out of the band, with what else the recording asks for: modes just outside the band, then more residual terms, then modes
 /// in the band that were missed.
-fn free_fit(recording: Recording, inside: Vec<Pole>, outside: &[Pole]) -> Option<FreeFit> {
+fn free_fit(recording: WeightedFrfs, inside: Vec<Pole>, outside: &[Pole]) -> Option<FreeFit> {
     let mut fit = FreeFit::converged(recording, inside, outside, TERMS.0)?;
     let lines = recording.frfs.lines().hz();
     let (low, high) = (TAU * lines[0], TAU * lines[lines.len() - 1]);
@@ -36,7 +36,7 @@ fn free_fit(recording: Recording, inside: Vec<Pole>, outside: &[Pole]) -> Option
 
 /// A free fit with poles that a model expects besides, one after the other. Where that leaves more than noise, the model's modes by themselves are another place to begin
 /// from: what the recording showed by itself, on few lines or with next to no noise, may be none of its modes.
-fn with_expected(recording: Recording, fit: FreeFit, besides: &[Pole], all: &[Pole]) -> FreeFit {
+fn with_expected(recording: WeightedFrfs, fit: FreeFit, besides: &[Pole], all: &[Pole]) -> FreeFit {
     let fit = besides.iter().fold(fit, |fit, pole| fit.with_expected(recording, *pole));
     if !fit.is_poor(recording) {
         return fit;
@@ -56,7 +56,7 @@ struct Above {
 impl Above {
     /// The lines above modes too low to be told from a mass line, as far as the others stay told from one; `None` where there are no such modes, and where lines are so
     /// uneven that more than the lowest few would have to go.
-    fn of(recording: Recording, poles: &[Pole]) -> Option<Self> {
+    fn of(recording: WeightedFrfs, poles: &[Pole]) -> Option<Self> {
         let hz = recording.frfs.lines().hz();
         let (from, reach) = (resolved_from(hz), resolved_from(hz) - hz[0]);
         let is_low = |pole: &&Pole| pole.omega <= TAU * from;
@@ -70,14 +70,14 @@ impl Above {
         Above::line(recording, first)
     }
 
-    fn line(recording: Recording, first: usize) -> Option<Self> {
+    fn line(recording: WeightedFrfs, first: usize) -> Option<Self> {
         let of_frf = recording.weights.chunks_exact(recording.frfs.lines().len());
         let weights = of_frf.flat_map(|weights| &weights[first..]).copied().collect();
         Some(Above { frfs: recording.frfs.on_lines(|line| line >= first)?, weights })
     }
 
-    fn recording(&self) -> Recording<'_> {
-        Recording { frfs: &self.frfs, weights: &self.weights }
+    fn recording(&self) -> WeightedFrfs<'_> {
+        WeightedFrfs { frfs: &self.frfs, weights: &self.weights }
     }
 }
 
@@ -89,7 +89,7 @@ impl RecordedModes {
     /// told from a mass line, the band begins above them: where they are on a few lines many poles fit as well, and mass lines differ with them by many deviations. A mode that the
     /// model has not, told as sharply as others, is kept.
     pub fn of(
-        recording: Recording,
+        recording: WeightedFrfs,
         options: &ModesOptions,
         expected: impl FnOnce(&RecordedModes) -> Expected,
     ) -> Option<Self> {
@@ -152,7 +152,7 @@ impl RecordedModes {
     /// The same modes as each FRF of the `recording` has them by itself, the free fit begun at the common poles; `None` for an FRF whose fit fails.
     ///
     /// Where a structure stays the same they differ by their noise.
-    pub fn one_by_one(&self, recording: Recording) -> Vec<Option<RecordedModes>> {
+    pub fn one_by_one(&self, recording: WeightedFrfs) -> Vec<Option<RecordedModes>> {
         let below = recording.frfs.lines().hz().partition_point(|hz| *hz < self.band.0);
         let Some(above) = Above::line(recording, below) else { return Vec::new() };
         let n = above.frfs.lines().len();
@@ -161,7 +161,7 @@ impl RecordedModes {
         let of = |index: usize| {
             let frfs = above.frfs.of_frfs(|frf| frf == index)?;
             let weights = above.weights.get(index * n..(index + 1) * n)?;
-            let alone = Recording { frfs: &frfs, weights };
+            let alone = WeightedFrfs { frfs: &frfs, weights };
             FreeFit::converged(alone, poles.clone(), outside, *terms)?
                 .recorded_modes_from(alone, self.resolved_from)
         };

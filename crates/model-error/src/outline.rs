@@ -3,7 +3,7 @@
 
 use crate::basis::{Pole, row};
 use crate::projection::Projection;
-use crate::recording::Recording;
+use crate::recording::WeightedFrfs;
 use crate::settings::outline::{
     GRID_FROM, GRID_PER_POLE, GRID_TO, LEAST_GRID, LEAST_GRID_FROM, LEAST_LINES, LINES_PER_COLUMN,
 };
@@ -34,7 +34,7 @@ pub(crate) struct Outline {
 impl Outline {
     /// Of a recording that was fitted with `poles`, the first `inside` of them in the band, and so many residual terms.
     pub(crate) fn of(
-        recording: Recording,
+        recording: WeightedFrfs,
         (poles, inside): (&[Pole], usize),
         terms: usize,
         mass_line: Vec<usize>,

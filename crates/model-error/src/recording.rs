@@ -5,7 +5,7 @@ use jointscope_spectra::FrfSet;
 
 /// FRFs to take the modes of: accelerances, with a weight for each value.
 #[derive(Debug, Clone, Copy)]
-pub struct Recording<'a> {
+pub struct WeightedFrfs<'a> {
     /// Accelerances with their variances, on lines above 0 Hz.
     pub frfs: &'a FrfSet,
     /// 1/variance of the real part, and of the imaginary part, of each value, FRF after FRF: 2/E|ε|². Zero where a value does not count.

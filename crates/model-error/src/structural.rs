@@ -7,7 +7,7 @@
 
 use crate::basis::{Pole, power_of_term, row};
 use crate::recorded::RecordedModes;
-use crate::recording::Recording;
+use crate::recording::WeightedFrfs;
 use crate::settings::structural::UNKNOWN_POLE;
 use jointscope_linalg::{Cholesky, dot};
 use num_complex::Complex64;
@@ -63,7 +63,7 @@ impl Basis<'_> {
 impl RecordedModes {
     /// What errors of a structure's model, however large, leave of the `recording` that these modes are from, to first order about the poles of its free fit; of a structure that is
     /// `held_by_dashpots` or not.
-    pub fn structural(&self, recording: Recording, held_by_dashpots: bool) -> Option<Structural> {
+    pub fn structural(&self, recording: WeightedFrfs, held_by_dashpots: bool) -> Option<Structural> {
         let hz = recording.frfs.lines().hz();
         let first = hz.partition_point(|hz| *hz < self.band.0);
         let omegas: Vec<f64> = hz[first..].iter().map(|hz| TAU * hz).collect();

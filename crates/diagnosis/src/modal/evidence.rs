@@ -3,7 +3,7 @@
 use crate::Hypothesis;
 use crate::modal::prior::Prior;
 use crate::modal::problem::{Iterate, Problem};
-use jointscope_model_error::{Comparison, ErrorSizes, Linear, ModelEvidence};
+use jointscope_model_error::{ErrorSizes, Linear, ModelEvidence, SharedFeatures};
 
 impl Problem<'_> {
     /// The linear model at a point and its evidence. Whether an effect's spring is damped beyond the fixture's damping nobody knows beforehand: it is as probable that
@@ -13,7 +13,7 @@ impl Problem<'_> {
         point: &Iterate,
         priors: &[Prior],
         slopes: &[Vec<f64>],
-        at: (&Comparison, Option<&ErrorSizes>),
+        at: (&SharedFeatures, Option<&ErrorSizes>),
     ) -> Option<(Linear, ModelEvidence)> {
         let (linear, damped) = self.evidence_within_bounds(point, priors, slopes, at)?;
         let dashpots = point.hypothesis.dashpots();
@@ -40,7 +40,7 @@ impl Problem<'_> {
         point: &Iterate,
         priors: &[Prior],
         slopes: &[Vec<f64>],
-        (comparison, known): (&Comparison, Option<&ErrorSizes>),
+        (comparison, known): (&SharedFeatures, Option<&ErrorSizes>),
     ) -> Option<(Linear, ModelEvidence)> {
         let of = |linear: Linear| {
             let evidence = linear.evidence(comparison, self.prior(), known)?;

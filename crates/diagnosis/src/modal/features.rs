@@ -7,7 +7,7 @@ use crate::settings::modal::recorded::SPARE_ORDERS;
 use crate::work::Work;
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::Quantity;
-use jointscope_model_error::{RecordedModes, Recording, SizePrior, Structural};
+use jointscope_model_error::{RecordedModes, SizePrior, Structural, WeightedFrfs};
 use jointscope_modes::ModesOptions;
 use std::sync::OnceLock;
 
@@ -67,8 +67,8 @@ impl Features {
     }
 }
 
-fn of(observation: &Observation) -> Recording<'_> {
-    Recording { frfs: observation.frfs(), weights: observation.weights() }
+fn of(observation: &Observation) -> WeightedFrfs<'_> {
+    WeightedFrfs { frfs: observation.frfs(), weights: observation.weights() }
 }
 
 /// The recording's modes, with the help of the model's where they are not resolved.

@@ -7,7 +7,7 @@ use crate::settings::work::costs::{FOLLOWED_POLES, SEARCHED_POLES};
 use crate::work::Work;
 use jointscope_fixture::Fixture;
 use jointscope_model_error::{
-    Comparison, ErrorSizes, KINDS, ModelledModes, Pairing, RecordedModes, Shapes, SizePrior,
+    ErrorSizes, KINDS, ModelledModes, Pairing, RecordedModes, Shapes, SharedFeatures, SizePrior,
 };
 
 /// The recording's modes and what is known of the model's error.
@@ -27,7 +27,7 @@ pub(crate) struct Problem<'a> {
 pub(crate) struct PairedModes {
     pub modelled: ModelledModes,
     pub pairing: Pairing,
-    pub comparison: Comparison,
+    pub comparison: SharedFeatures,
 }
 
 /// One iterate of a fit: the hypothesis, its modes and what they leave.
@@ -62,7 +62,7 @@ impl Problem<'_> {
     ) -> Option<PairedModes> {
         let shapes = |fixture: &Fixture| Shapes::of(fixture, self.recorded, &modelled.poles());
         let own = shapes(fixture)?;
-        let mut comparison = Comparison::new(self.recorded, &pairing, &modelled, &own);
+        let mut comparison = SharedFeatures::new(self.recorded, &pairing, &modelled, &own);
         // Dashpots turn phases as the fixture has them, or, if its damping is that of the modes as they stand, not at all; and its damping is no proportional one of a structure with
         // effects. Which of both it is, if either, nobody knows.
         let springs = match hypothesis.without_dashpots() {

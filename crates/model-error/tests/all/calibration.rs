@@ -1,7 +1,7 @@
 //! What a free fit says of a recording against what the model that made it says, in the deviations that the fit states.
 
 use crate::common::*;
-use jointscope_model_error::{Expected, RecordedModes, Recording};
+use jointscope_model_error::{Expected, RecordedModes, WeightedFrfs};
 use jointscope_modes::ModesOptions;
 use jointscope_spectra::SpectralLines;
 use std::collections::BTreeMap;
@@ -117,7 +117,7 @@ fn a_band_from_0_hz_has_no_modes() {
     // Its mass line and what lies below the band are powers of frequency.
     let from_zero = SpectralLines::even(0.0, 2.5, 400).unwrap();
     let set = Recorded::of(&blocks(""), &four(), &from_zero, noise(Some(1)));
-    let recording = Recording { frfs: &set.set, weights: &set.weights };
+    let recording = WeightedFrfs { frfs: &set.set, weights: &set.weights };
     assert!(RecordedModes::of(recording, &ModesOptions::default(), |_| Expected::default()).is_none());
 }
 
@@ -140,7 +140,7 @@ fn mass_lines_beside_a_suspension_differ_by_the_deviations_that_are_stated() {
     let (mut chi2, mut count) = (0.0, 0);
     for seed in 0..SEEDS {
         let set = Recorded::of(&fixture, &four(), &lines, noise(Some(seed)));
-        let recording = Recording { frfs: &set.set, weights: &set.weights };
+        let recording = WeightedFrfs { frfs: &set.set, weights: &set.weights };
         let expected = |alone: &RecordedModes| alone.expected_by(&fixture);
         let recorded = RecordedModes::of(recording, &ModesOptions::default(), expected).unwrap();
         assert_eq!(recorded.misfit.len(), lines.len());

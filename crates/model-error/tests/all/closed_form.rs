@@ -2,7 +2,9 @@
 
 use crate::common::*;
 use jointscope_fixture::Fixture;
-use jointscope_model_error::{Comparison, ErrorSizes, ModelledModes, Pairing, Pole, Shapes, modes_within};
+use jointscope_model_error::{
+    ErrorSizes, ModelledModes, Pairing, Pole, Shapes, SharedFeatures, modes_within,
+};
 use jointscope_spectra::{FrfPair, SpectralLines};
 use num_complex::Complex64;
 use proptest::prelude::*;
@@ -263,7 +265,7 @@ fn modes_left_alone_are_not_compared() {
     model.modes.clear();
     let pairing = Pairing::of(&recorded, &model);
     let shapes = Shapes::of(&fixture, &recorded, &[]).unwrap();
-    let comparison = Comparison::new(&recorded, &pairing, &model, &shapes);
+    let comparison = SharedFeatures::new(&recorded, &pairing, &model, &shapes);
     // The two residual terms are left.
     assert_eq!((pairing.pairs.len(), comparison.count()), (0, 2));
 }

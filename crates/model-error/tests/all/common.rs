@@ -3,7 +3,7 @@
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_model_error::{
-    Comparison, ErrorSizes, Expected, ModelledModes, Pairing, RecordedModes, Recording, Shapes,
+    ErrorSizes, Expected, ModelledModes, Pairing, RecordedModes, Shapes, SharedFeatures, WeightedFrfs,
 };
 use jointscope_modes::ModesOptions;
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
@@ -137,7 +137,7 @@ impl Recorded {
     }
 
     pub(crate) fn modes(&self) -> RecordedModes {
-        let recording = Recording { frfs: &self.set, weights: &self.weights };
+        let recording = WeightedFrfs { frfs: &self.set, weights: &self.weights };
         RecordedModes::of(recording, &ModesOptions::default(), |_| Expected::default()).unwrap()
     }
 }
@@ -158,7 +158,7 @@ pub(crate) struct Compared {
     pub recorded: RecordedModes,
     pub modelled: ModelledModes,
     pub pairing: Pairing,
-    pub comparison: Comparison,
+    pub comparison: SharedFeatures,
 }
 
 impl Compared {
@@ -166,7 +166,7 @@ impl Compared {
         let modelled = modelled(fixture, &recorded);
         let pairing = Pairing::of(&recorded, &modelled);
         let shapes = Shapes::of(fixture, &recorded, &modelled.poles()).unwrap();
-        let comparison = Comparison::new(&recorded, &pairing, &modelled, &shapes);
+        let comparison = SharedFeatures::new(&recorded, &pairing, &modelled, &shapes);
         Compared { recorded, modelled, pairing, comparison }
     }
 

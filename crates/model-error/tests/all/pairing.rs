@@ -1,7 +1,7 @@
 //! Which mode of a model is which of a recording.
 
 use crate::common::*;
-use jointscope_model_error::{Expected, ModelledModes, Pairing, RecordedModes, Recording};
+use jointscope_model_error::{Expected, ModelledModes, Pairing, RecordedModes, WeightedFrfs};
 use jointscope_modes::ModesOptions;
 use jointscope_spectra::SpectralLines;
 use num_complex::Complex64;
@@ -121,7 +121,7 @@ fn a_mode_of_the_model_that_a_recording_does_not_show_costs_half_its_chi_square(
 fn a_mode_that_the_analysis_left_out_is_found_by_the_model_that_expects_it() {
     let fixture = blocks("");
     let set = Recorded::of(&fixture, &four(), &lines(1500.0), noise(Some(1)));
-    let recording = Recording { frfs: &set.set, weights: &set.weights };
+    let recording = WeightedFrfs { frfs: &set.set, weights: &set.weights };
     // The analyst picked the second mode only. The first is narrower than the lines are apart: by itself it might be a tone.
     let options = ModesOptions { pick: vec![907.8], ..ModesOptions::default() };
     let without = RecordedModes::of(recording, &options, |_| Expected::default()).unwrap();
@@ -137,7 +137,7 @@ fn a_mode_that_the_analysis_left_out_is_found_by_the_model_that_expects_it() {
 #[test]
 fn a_wide_mode_that_the_analysis_left_out_is_found_without_a_model_that_expects_it() {
     let set = Recorded::of(&blocks(""), &four(), &lines(1500.0), noise(Some(1)));
-    let recording = Recording { frfs: &set.set, weights: &set.weights };
+    let recording = WeightedFrfs { frfs: &set.set, weights: &set.weights };
     let options = ModesOptions { pick: vec![247.0], ..ModesOptions::default() };
     let found = RecordedModes::of(recording, &options, |_| Expected::default()).unwrap();
     assert_eq!(found.modes.len(), 2);
@@ -179,7 +179,7 @@ fn counts_just_above_the_lowest_line(dashpot: f64) {
     let lines = SpectralLines::even(20.0, 9.5, 120).unwrap();
     let set =
         Recorded::of(&two_masses(0.004, spring), &pairs(&[("1", "1"), ("2", "1")]), &lines, noise(Some(1)));
-    let recording = Recording { frfs: &set.set, weights: &set.weights };
+    let recording = WeightedFrfs { frfs: &set.set, weights: &set.weights };
     let beside = |physics: &str| {
         let fixture = two_masses(0.004, physics);
         let expected = |alone: &RecordedModes| alone.expected_by(&fixture);

@@ -2,14 +2,14 @@
 
 use crate::common::*;
 use jointscope_fixture::Fixture;
-use jointscope_model_error::{Recording, Structural};
+use jointscope_model_error::{Structural, WeightedFrfs};
 use jointscope_spectra::SpectralLines;
 
 /// What is left, and of how many degrees of freedom; of a structure that is held by dashpots, or not.
 fn left(fixture: &Fixture, held: bool, seed: u64) -> (Structural, f64) {
     let lines = SpectralLines::even(7.5, 2.5, 400).unwrap();
     let recorded = Recorded::of(fixture, &four(), &lines, noise(Some(seed)));
-    let recording = Recording { frfs: &recorded.set, weights: &recorded.weights };
+    let recording = WeightedFrfs { frfs: &recorded.set, weights: &recorded.weights };
     let structural = recorded.modes().structural(recording, held).unwrap();
     let lines = lines.hz().iter().filter(|hz| **hz >= structural.from).count();
     (structural, (8 * lines - structural.unknowns) as f64)
