@@ -1,7 +1,7 @@
 //! What keeps a comparison from being taken as it stands.
 
 use crate::at_law::SAME_FREQUENCY;
-use crate::{Compared, Decomposed, Estimate, Number, Together, WhyApart};
+use crate::{Compared, Decomposed, FiledEstimate, Number, Together, WhyApart};
 use jointscope_inference::Z95;
 use serde::Serialize;
 
@@ -98,7 +98,7 @@ impl Caution {
     /// What is to be known of the joints as their files tell it.
     pub(crate) fn of(
         joints: &[Decomposed],
-        estimates: &[Estimate],
+        estimates: &[FiledEstimate],
         (compared, numbers): (Compared, &[Number]),
         together: &Together,
     ) -> Vec<Self> {

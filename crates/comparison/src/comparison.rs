@@ -4,7 +4,7 @@ use crate::by_law::{ByLaw, posteriors};
 use crate::choices::choices;
 use crate::tests_of_equality::of_two;
 use crate::{
-    Caution, Compared, Decomposed, ELEMENTS, Equality, Estimate, FiledJoint, Kind, LawOfAll, LawsDiffer,
+    Caution, Compared, Decomposed, ELEMENTS, Equality, FiledEstimate, FiledJoint, Kind, LawOfAll, LawsDiffer,
     ModelRatios, Number, Pair, Ranking, Specimens, Together,
 };
 
@@ -53,14 +53,14 @@ impl ElementRanking {
     }
 }
 
-impl From<&FiledJoint> for Estimate {
+impl From<&FiledJoint> for FiledEstimate {
     fn from(fit: &FiledJoint) -> Self {
         let deviation = |e: usize| fit.covariance[e][e].max(0.0).sqrt();
         let matrix = |first: usize| {
             let of = |e: usize| deviation(first + e);
             [[of(0), of(1)], [of(1), of(2)]]
         };
-        Estimate {
+        FiledEstimate {
             stiffness: fit.stiffness,
             damping: fit.damping,
             stiffness_std: matrix(0),
@@ -185,12 +185,13 @@ impl Comparison {
         let by_law = match compared {
             Compared::AllFrfs => posteriors(&choices, &numbers, options.independent),
             _ => {
-                let estimates: Vec<Estimate> = joints.iter().map(|joint| stated(joint, compared)).collect();
+                let estimates: Vec<FiledEstimate> =
+                    joints.iter().map(|joint| stated(joint, compared)).collect();
                 vec![(1.0, Together::independent(&estimates, &numbers))]
             }
         };
         let together = with_spread(&by_law);
-        let estimates: Vec<Estimate> = joints.iter().map(|joint| stated(joint, compared)).collect();
+        let estimates: Vec<FiledEstimate> = joints.iter().map(|joint| stated(joint, compared)).collect();
         let cautions = Caution::of(&joints, &estimates, (compared, &numbers), &together);
         let all: Vec<usize> = (0..joints.len()).collect();
         let name = |joint: usize| joints[joint].name.as_str();
@@ -239,7 +240,7 @@ impl Comparison {
     }
 
     /// What is compared of a joint: of fits to tests on the same blocks what all of them tell of it.
-    pub fn estimate(&self, joint: usize) -> Estimate {
+    pub fn estimate(&self, joint: usize) -> FiledEstimate {
         let mut estimate = stated(&self.joints[joint], self.compared);
         for (n, number) in self.numbers.iter().enumerate() {
             let (value, std) = (self.together.value(joint, n), self.together.std(joint, n));
@@ -296,9 +297,9 @@ fn common_relation(joints: &[Decomposed]) -> Result<String, ComparisonError> {
 }
 
 /// The estimate that stands for a joint, as its file states it.
-fn stated(joint: &Decomposed, compared: Compared) -> Estimate {
+fn stated(joint: &Decomposed, compared: Compared) -> FiledEstimate {
     let found = match compared {
-        Compared::AllFrfs => joint.fitted.as_ref().map(Estimate::from),
+        Compared::AllFrfs => joint.fitted.as_ref().map(FiledEstimate::from),
         Compared::Likelihood => joint.likelihood,
         Compared::Average => None,
     };
@@ -307,7 +308,7 @@ fn stated(joint: &Decomposed, compared: Compared) -> Estimate {
 
 /// The numbers that any of the joints has.
 fn numbers(joints: &[Decomposed], compared: Compared) -> Vec<Number> {
-    let estimates: Vec<Estimate> = joints.iter().map(|joint| stated(joint, compared)).collect();
+    let estimates: Vec<FiledEstimate> = joints.iter().map(|joint| stated(joint, compared)).collect();
     let elements: &[(usize, usize)] = if compared == Compared::Average { &ELEMENTS } else { &DISTINCT };
     let all = [Kind::Stiffness, Kind::Damping]
         .into_iter()

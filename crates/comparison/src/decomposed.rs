@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 /// K and C with standard deviations, SI.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Estimate {
+pub struct FiledEstimate {
     /// K.
     pub stiffness: Matrix,
     /// C.
@@ -85,7 +85,7 @@ pub struct Decomposed {
     /// Plain averages; none of joints that one fit found at once.
     pub average: Option<Average>,
     /// The maximum-likelihood joint, by the exact relation, where there is one.
-    pub likelihood: Option<Estimate>,
+    pub likelihood: Option<FiledEstimate>,
     /// Why there is none.
     pub failed: Option<String>,
     /// The joint with the fixture's quantities moving, where the file has it.
@@ -110,7 +110,7 @@ pub struct Average {
     /// Hz.
     pub band: (f64, f64),
     /// K and C.
-    pub estimate: Estimate,
+    pub estimate: FiledEstimate,
 }
 
 /// Why a `stiffness.json` cannot be read, or not as one joint's.
@@ -267,7 +267,7 @@ fn recording(file: &Value) -> Vec<String> {
 }
 
 /// The maximum-likelihood joint; none where the entry says why it failed.
-fn likelihood(file: &Value) -> Result<Option<Estimate>, DecomposedError> {
+fn likelihood(file: &Value) -> Result<Option<FiledEstimate>, DecomposedError> {
     if file["maximum_likelihood"]["failed"].is_string() {
         return Ok(None);
     }
@@ -295,7 +295,7 @@ impl From<LineEntry> for Line {
     }
 }
 
-impl From<EstimateEntry> for Estimate {
+impl From<EstimateEntry> for FiledEstimate {
     /// K and C with all their deviations in one: `std`, `std_fixture` and `std_model` are of independent causes.
     fn from(entry: EstimateEntry) -> Self {
         let parts = [entry.std, entry.std_fixture, entry.std_model];
@@ -305,7 +305,7 @@ impl From<EstimateEntry> for Estimate {
             };
             [[element(0, 0), element(0, 1)], [element(1, 0), element(1, 1)]]
         };
-        Estimate {
+        FiledEstimate {
             stiffness: entry.stiffness,
             damping: entry.damping,
             stiffness_std: together(&|part| part.stiffness),

@@ -1,6 +1,6 @@
 //! The numbers by which joints are compared: elements of K and C.
 
-use crate::Estimate;
+use crate::FiledEstimate;
 
 /// K or C.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,7 +35,7 @@ impl Kind {
     }
 
     /// Value and standard deviation of an element of an estimate.
-    pub fn of(self, estimate: &Estimate, (i, j): (usize, usize)) -> (f64, f64) {
+    pub fn of(self, estimate: &FiledEstimate, (i, j): (usize, usize)) -> (f64, f64) {
         match self {
             Kind::Stiffness => (estimate.stiffness[i][j], estimate.stiffness_std[i][j]),
             Kind::Damping => (estimate.damping[i][j], estimate.damping_std[i][j]),
@@ -73,13 +73,13 @@ impl Number {
     }
 
     /// Whether an estimate has a value of it without saying how sure that is.
-    pub(crate) fn has_no_deviation(self, estimate: &Estimate) -> bool {
+    pub(crate) fn has_no_deviation(self, estimate: &FiledEstimate) -> bool {
         let (value, std) = self.of(estimate);
         value != 0.0 && std == 0.0
     }
 
     /// Value and standard deviation of an estimate's.
-    pub(crate) fn of(self, estimate: &Estimate) -> (f64, f64) {
+    pub(crate) fn of(self, estimate: &FiledEstimate) -> (f64, f64) {
         self.kind.of(estimate, self.element)
     }
 }

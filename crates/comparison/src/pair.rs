@@ -9,7 +9,7 @@ use serde::Serialize;
 
 /// A value with its standard deviation and 95 % interval, SI.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Figure {
+pub struct FigureInterval {
     /// The value.
     pub value: f64,
     /// Its standard deviation.
@@ -18,10 +18,10 @@ pub struct Figure {
     pub ci95: [f64; 2],
 }
 
-impl Figure {
+impl FigureInterval {
     pub(crate) fn normal(value: f64, variance: f64) -> Self {
         let std = variance.max(0.0).sqrt();
-        Figure { value, std, ci95: interval95(value, std) }
+        FigureInterval { value, std, ci95: interval95(value, std) }
     }
 }
 
@@ -44,7 +44,7 @@ pub struct PairedNumber {
     /// SI unit of the difference.
     pub unit: &'static str,
     /// Second less first.
-    pub difference: Figure,
+    pub difference: FigureInterval,
     /// Second over first; nothing where the first cannot be told from zero, where one of them has no deviation, and for places.
     pub ratio: Option<Ratio>,
     /// Correlation of the two errors; nothing where one of them has none.
@@ -302,15 +302,15 @@ impl PairedNumber {
     }
 }
 
-fn difference(parts: &[Part]) -> Figure {
+fn difference(parts: &[Part]) -> FigureInterval {
     let each = parts.iter().map(|&(weight, [a, b], [aa, ab, bb])| (weight, b - a, aa + bb - 2.0 * ab));
     let each: Vec<(f64, f64, f64)> = each.collect();
     let (_, value, variance) = each[0];
     if each.len() == 1 {
-        return Figure::normal(value, variance);
+        return FigureInterval::normal(value, variance);
     }
     let ci95 = mixed_interval(&each);
-    Figure { value, std: 0.5 * (ci95[1] - ci95[0]) / Z95, ci95 }
+    FigureInterval { value, std: 0.5 * (ci95[1] - ci95[0]) / Z95, ci95 }
 }
 
 fn second_is_larger(parts: &[Part]) -> f64 {

@@ -5,7 +5,7 @@
 //! degrees of freedom for the true τ: its quantiles give an exact interval, Q = n − 1 the estimate (Mandel and Paule), Q(0) the test of equal specimens.
 
 use crate::normal::{chi2_above, chi2_quantile};
-use crate::{Figure, Number, Together};
+use crate::{FigureInterval, Number, Together};
 use jointscope_inference::{SIGNIFICANT, Z95};
 use jointscope_linalg::{Cholesky, dot};
 use serde::Serialize;
@@ -31,7 +31,7 @@ pub struct Scatter {
     /// SI unit.
     pub unit: &'static str,
     /// Mean over the specimens, as that of their kind: the scatter of so few included.
-    pub mean: Figure,
+    pub mean: FigureInterval,
     /// Standard deviation between specimens.
     pub between: f64,
     /// Its 95 % interval: from zero where the measurement explains the scatter, without an upper end where specimens are closer to each other than errors of measurement leave them
@@ -94,7 +94,7 @@ impl Scatter {
         Scatter {
             element,
             unit,
-            mean: Figure { value: mean, std, ci95: [mean - half, mean + half] },
+            mean: FigureInterval { value: mean, std, ci95: [mean - half, mean + half] },
             between: root(degrees as f64),
             between_ci95: (root(chi2_quantile(0.025, degrees)), has_upper.then(|| root(highest))),
             measurement: own.max(0.0).sqrt(),

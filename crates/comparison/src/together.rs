@@ -16,7 +16,7 @@
 use crate::bodies::{Part, connected, differing, likelihood, parts, shared, sharing_a_body, tests};
 use crate::choices::Choice;
 use crate::common_law::groups as followers;
-use crate::{Apart, Decomposed, Estimate, Number, SharedBody, WhyApart};
+use crate::{Apart, Decomposed, FiledEstimate, Number, SharedBody, WhyApart};
 use jointscope_inference::{NormalEquations, birge_ratio};
 use std::collections::BTreeMap;
 
@@ -73,7 +73,7 @@ fn apart_beforehand(
 
 impl Together {
     /// Of joints compared by independent estimates.
-    pub(crate) fn independent(estimates: &[Estimate], numbers: &[Number]) -> Self {
+    pub(crate) fn independent(estimates: &[FiledEstimate], numbers: &[Number]) -> Self {
         let count = numbers.len();
         let mut together = Together::empty(estimates.len(), count);
         for (joint, estimate) in estimates.iter().enumerate() {

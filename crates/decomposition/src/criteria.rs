@@ -2,7 +2,8 @@
 
 use crate::settings::estimates::{BEYOND_CHANCE, NOT_RIGID, ON_THE_BOUNDARY};
 use crate::{
-    Analysis, Contradiction, DynamicStiffnessPart, Estimate, Judgement, MatrixElement, Method, Relation, Use,
+    Analysis, Contradiction, DynamicStiffnessPart, JointEstimate, Judgement, MatrixElement, Method, Relation,
+    Use,
 };
 use jointscope_fixture::{Fixture, JointLaw, Nature, Quantity};
 use jointscope_inference::Z95;
@@ -10,7 +11,7 @@ use jointscope_inference::Z95;
 impl Judgement {
     /// Judges an analysis made with this fixture.
     pub fn of(analysis: &Analysis, fixture: &Fixture) -> Self {
-        let best = Estimate::best(analysis);
+        let best = JointEstimate::best(analysis);
         let scalar = analysis.spectrum.scalar;
         let fit = analysis.likelihood.as_ref().ok();
         let first = best.figure(DynamicStiffnessPart::Stiffness, MatrixElement::all(scalar)[0]);
@@ -47,15 +48,15 @@ impl Judgement {
 
 /// The element that the fit and the weighted mean differ in most; nothing where they agree, are of different relations, or the fitted joint has a mass,
 /// which the lines hold as well.
-fn contradiction(analysis: &Analysis, best: &Estimate) -> Option<Contradiction> {
+fn contradiction(analysis: &Analysis, best: &JointEstimate) -> Option<Contradiction> {
     if !matches!(best.method, Method::MaximumLikelihood | Method::AllFrfs)
         || analysis.spectrum.relation == Relation::Paper
         || analysis.lines_hold_mass()
     {
         return None;
     }
-    let weighted = Estimate::weighted(analysis)?;
-    let plain = Estimate::plain(analysis);
+    let weighted = JointEstimate::weighted(analysis)?;
+    let plain = JointEstimate::plain(analysis);
     let root = |index: usize| {
         best.figure(DynamicStiffnessPart::Stiffness, MatrixElement { row: index, column: index })
             .value
@@ -75,7 +76,7 @@ fn contradiction(analysis: &Analysis, best: &Estimate) -> Option<Contradiction> 
     differences.max_by(|a, b| a.relative.total_cmp(&b.relative))
 }
 
-fn agrees(analysis: &Analysis, fixture: &Fixture, best: &Estimate, element: MatrixElement) -> bool {
+fn agrees(analysis: &Analysis, fixture: &Fixture, best: &JointEstimate, element: MatrixElement) -> bool {
     let figure = best.figure(DynamicStiffnessPart::Stiffness, element);
     let known = nominal_std(analysis, fixture, element).unwrap_or(0.0);
     let nominal = analysis.nominal_average(DynamicStiffnessPart::Stiffness, element, best.paper);

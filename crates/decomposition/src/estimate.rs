@@ -9,7 +9,7 @@ use crate::{Analysis, DynamicStiffnessPart, MatrixAverage, MatrixElement, Method
 /// K and C with standard deviations from noise and from the fixture's tolerances. The fit's noise holds also what it costs that
 /// a constant joint does not explain the FRFs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimate {
+pub struct JointEstimate {
     /// Where it comes from.
     pub method: Method,
     /// Whether it is of the matrices of eq (7) rather than of the joint's own k and c.
@@ -21,7 +21,7 @@ pub struct Estimate {
 
 /// An element of an estimate, SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Figure {
+pub struct ElementFigure {
     /// Its value.
     pub value: f64,
     /// Standard deviation by noise (of a fit: and misfit).
@@ -30,7 +30,7 @@ pub struct Figure {
     pub tolerance: Option<f64>,
 }
 
-impl Figure {
+impl ElementFigure {
     /// Noise and tolerance together, independent of each other.
     pub fn total(&self) -> f64 {
         self.noise.hypot(self.tolerance.unwrap_or(0.0))
@@ -47,12 +47,12 @@ impl Figure {
     }
 }
 
-impl Estimate {
+impl JointEstimate {
     /// The joint from all FRFs; where there is none, the maximum-likelihood joint, then the mean of what the relation gives.
     pub fn best(analysis: &Analysis) -> Self {
         let mean = || {
             let tolerance = Some(analysis.tolerance_of_averages());
-            Self::weighted(analysis).map(|mean| Estimate { tolerance, ..mean })
+            Self::weighted(analysis).map(|mean| JointEstimate { tolerance, ..mean })
         };
         Self::all_frfs(analysis)
             .or_else(|| Self::maximum_likelihood(analysis))
@@ -63,7 +63,7 @@ impl Estimate {
     /// From all FRFs; the deviations hold noise, the fixture's tolerances and the model's error in one.
     pub fn all_frfs(analysis: &Analysis) -> Option<Self> {
         let fit = analysis.joint_fit.as_ref().ok()?;
-        Some(Estimate {
+        Some(JointEstimate {
             method: Method::AllFrfs,
             paper: false,
             value: (fit.stiffness, fit.damping),
@@ -78,7 +78,7 @@ impl Estimate {
         let model = fit.model_std();
         let together =
             |a: &RealMatrix2, b: &RealMatrix2| (a.map(|e| e * e) + b.map(|e| e * e)).map(f64::sqrt);
-        Some(Estimate {
+        Some(JointEstimate {
             method: Method::MaximumLikelihood,
             paper: false,
             value: (fit.stiffness, fit.damping),
@@ -105,7 +105,7 @@ impl Estimate {
         method: Method,
         tolerance: Option<(RealMatrix2, RealMatrix2)>,
     ) -> Self {
-        Estimate {
+        JointEstimate {
             method,
             paper: analysis.spectrum.relation == Relation::Paper,
             value: (average.stiffness, average.damping),
@@ -115,8 +115,8 @@ impl Estimate {
     }
 
     /// An element with its deviations.
-    pub fn figure(&self, part: DynamicStiffnessPart, element: MatrixElement) -> Figure {
-        Figure {
+    pub fn figure(&self, part: DynamicStiffnessPart, element: MatrixElement) -> ElementFigure {
+        ElementFigure {
             value: element.of(&part.of(self.value)),
             noise: element.of(&part.of(self.noise)),
             tolerance: self.tolerance.map(|tolerance| element.of(&part.of(tolerance))),

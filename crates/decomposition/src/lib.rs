@@ -64,7 +64,7 @@ pub use analysis::Analysis;
 pub use averages::{Averages, MatrixAverage};
 pub use crossing::{CrossingError, CrossingFrfs};
 pub use element::{DynamicStiffnessPart, MatrixElement};
-pub use estimate::{Estimate, Figure};
+pub use estimate::{ElementFigure, JointEstimate};
 pub use from_frfs::AnalysisOptions;
 pub(crate) use idle_points::IdlePoints;
 pub use interface_spectrum::{

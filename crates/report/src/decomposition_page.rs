@@ -12,7 +12,7 @@ mod result;
 mod shares;
 mod subject;
 
-use jointscope_decomposition::{Analysis, Estimate, Use};
+use jointscope_decomposition::{Analysis, JointEstimate, Use};
 use jointscope_fixture::Fixture;
 use jointscope_pipeline::{Decomposition, Joints};
 use jointscope_wording::decomposition;
@@ -45,7 +45,7 @@ fn tone(analysis: &Analysis) -> Tone {
 ///
 /// `fixture` is the one that `analysis` was made with. The same input gives the same bytes.
 pub fn decomposition_report(analysis: &Analysis, fixture: &Fixture, context: &PageContext) -> Report {
-    let best = Estimate::best(analysis);
+    let best = JointEstimate::best(analysis);
     let subject = Subject { analysis, fixture, best: &best };
     let title = format!("Joint {}: stiffness and damping", analysis.joint);
     let said = decomposition::JointSummary::of(analysis, fixture, &best);

@@ -6,8 +6,8 @@ use crate::format::{fixed, quantity, significant, trimmed};
 use crate::numbers::counted;
 use crate::{Remarks, Summary, capitalised};
 use jointscope_decomposition::{
-    Analysis, Contradiction, DynamicStiffnessPart, Estimate, Figure, JointFit, JointsFit, LikelihoodFit,
-    MatrixElement, Method, Relation,
+    Analysis, Contradiction, DynamicStiffnessPart, ElementFigure, JointEstimate, JointFit, JointsFit,
+    LikelihoodFit, MatrixElement, Method, Relation,
 };
 use jointscope_fixture::{Fixture, JointLaw};
 use jointscope_frf::noise::NoiseSource;
@@ -23,7 +23,7 @@ pub struct JointSummary {
 
 impl JointSummary {
     /// Of `best`, an estimate of `analysis`, which was made with `fixture`.
-    pub fn of(analysis: &Analysis, fixture: &Fixture, best: &Estimate) -> Self {
+    pub fn of(analysis: &Analysis, fixture: &Fixture, best: &JointEstimate) -> Self {
         let subject = Subject { analysis, fixture, best };
         JointSummary { headline: headline(&subject), details: details(&subject) }
     }
@@ -33,7 +33,7 @@ impl JointSummary {
 struct Subject<'a> {
     analysis: &'a Analysis,
     fixture: &'a Fixture,
-    best: &'a Estimate,
+    best: &'a JointEstimate,
 }
 
 impl Subject<'_> {
@@ -59,7 +59,7 @@ fn first(subject: &Subject) -> MatrixElement {
 }
 
 /// A figure of an estimate's K with its uncertainty.
-fn value(estimate: &Estimate, element: MatrixElement) -> (Figure, String) {
+fn value(estimate: &JointEstimate, element: MatrixElement) -> (ElementFigure, String) {
     let figure = estimate.figure(DynamicStiffnessPart::Stiffness, element);
     (figure, quantity(figure.value, figure.total(), unit(DynamicStiffnessPart::Stiffness, element)))
 }
@@ -156,7 +156,7 @@ fn contradicted(subject: &Subject, Contradiction { element, fit, mean, .. }: Con
 /// What eq (7) gives, and that it is something else than the figures above.
 fn paper_means(subject: &Subject) -> Option<String> {
     let element = first(subject);
-    let (_, value) = value(&Estimate::plain(subject.analysis), element);
+    let (_, value) = value(&JointEstimate::plain(subject.analysis), element);
     subject.is_paper().then(|| {
         format!(
             "Eq (7) gives {} = {value} as a plain mean over {}. It leaves out that a rotation of one end of the joint moves the other, so it \

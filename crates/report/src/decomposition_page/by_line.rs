@@ -1,6 +1,6 @@
 //! K and C over the spectral lines.
 
-use jointscope_decomposition::{Analysis, DynamicStiffnessPart, Estimate, MatrixElement, Method};
+use jointscope_decomposition::{Analysis, DynamicStiffnessPart, JointEstimate, MatrixElement, Method};
 use jointscope_inference::interval95;
 
 use super::subject::Subject;
@@ -116,7 +116,7 @@ fn level(
     let estimate = if subject.best.paper == subject.is_paper() {
         *subject.best
     } else {
-        Estimate::weighted(subject.analysis).unwrap_or_else(|| Estimate::plain(subject.analysis))
+        JointEstimate::weighted(subject.analysis).unwrap_or_else(|| JointEstimate::plain(subject.analysis))
     };
     let label = match estimate.method {
         Method::MaximumLikelihood => "maximum likelihood",

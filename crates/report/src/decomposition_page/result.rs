@@ -1,6 +1,6 @@
 //! Key figures and the table of all averages.
 
-use jointscope_decomposition::{DynamicStiffnessPart, Estimate, Figure, MatrixElement};
+use jointscope_decomposition::{DynamicStiffnessPart, ElementFigure, JointEstimate, MatrixElement};
 
 use super::subject::Subject;
 use crate::format::{in_parts, quantity_in, significant};
@@ -12,8 +12,8 @@ use jointscope_wording::decomposition::{band, share};
 use jointscope_wording::element::{meaning, method, symbol, unit};
 
 pub(super) fn section(subject: &Subject) -> Section {
-    let likelihood = Estimate::maximum_likelihood(subject.analysis);
-    let all = Estimate::all_frfs(subject.analysis);
+    let likelihood = JointEstimate::maximum_likelihood(subject.analysis);
+    let all = JointEstimate::all_frfs(subject.analysis);
     let section = Section::new("Result")
         .paragraph(introduction(subject))
         .cards(cards(subject))
@@ -96,8 +96,8 @@ impl Row {
     }
 
     /// Value ± noise ± tolerance; `coarsest` (SI) sets the digits where it is larger than both.
-    fn text(&self, estimate: &Estimate, coarsest: f64) -> String {
-        let Figure { value, noise, tolerance } = estimate.figure(self.part, self.element);
+    fn text(&self, estimate: &JointEstimate, coarsest: f64) -> String {
+        let ElementFigure { value, noise, tolerance } = estimate.figure(self.part, self.element);
         let stds: Vec<f64> = [Some(noise), tolerance].into_iter().flatten().collect();
         in_parts(value, &stds, coarsest, &self.scale)
     }
@@ -116,9 +116,13 @@ fn with_nominal(table: Table<Row>) -> Table<Row> {
 }
 
 /// Means over the band, and the maximum-likelihood joint where it is of the same relation.
-fn means_table(subject: &Subject, likelihood: Option<&Estimate>, all: Option<&Estimate>) -> Table<Row> {
+fn means_table(
+    subject: &Subject,
+    likelihood: Option<&JointEstimate>,
+    all: Option<&JointEstimate>,
+) -> Table<Row> {
     let (analysis, paper) = (subject.analysis, subject.is_paper());
-    let (plain, weighted) = (Estimate::plain(analysis), Estimate::weighted(analysis));
+    let (plain, weighted) = (JointEstimate::plain(analysis), JointEstimate::weighted(analysis));
     let reference = all.or(likelihood).or(weighted.as_ref()).unwrap_or(&plain);
     let rows = DynamicStiffnessPart::ALL.into_iter().flat_map(|part| {
         MatrixElement::all(subject.is_scalar()).iter().map(move |&element| {
@@ -164,7 +168,7 @@ fn footnotes(subject: &Subject, with_likelihood: bool) -> Vec<&'static str> {
              and 21 differ by beyond their ± is an error of the model or the test.",
         );
     }
-    if Estimate::weighted(subject.analysis).is_some() {
+    if JointEstimate::weighted(subject.analysis).is_some() {
         notes.push(
             "Tolerances act on the weighted mean much as on the plain one; they are not worked out for it.",
         );
@@ -180,7 +184,11 @@ fn footnotes(subject: &Subject, with_likelihood: bool) -> Vec<&'static str> {
 }
 
 /// The exact joint beside the matrices of eq (7).
-fn likelihood_table(subject: &Subject, likelihood: &Estimate, all: Option<&Estimate>) -> Table<Row> {
+fn likelihood_table(
+    subject: &Subject,
+    likelihood: &JointEstimate,
+    all: Option<&JointEstimate>,
+) -> Table<Row> {
     let rows = DynamicStiffnessPart::ALL.into_iter().flat_map(|part| {
         MatrixElement::distinct(subject.is_scalar()).map(move |element| {
             let nominal = subject.analysis.nominal_average(part, element, false);

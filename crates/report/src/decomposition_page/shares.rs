@@ -1,6 +1,6 @@
 //! Which tolerances of the fixture matter.
 
-use jointscope_decomposition::{DynamicStiffnessPart, Estimate, MatrixElement, Method, ToleranceShare};
+use jointscope_decomposition::{DynamicStiffnessPart, JointEstimate, MatrixElement, Method, ToleranceShare};
 use jointscope_fixture::{Dof, Fixture, NamedQuantity, Nature, QuantityKey as Key, QuantityOwner};
 use jointscope_linalg::RealMatrix2;
 
@@ -108,7 +108,7 @@ fn effect<'a>(
         Method::WeightedMean | Method::PlainMean => share.plain,
     };
     let across = match subject.best.method {
-        Method::AllFrfs => Estimate::maximum_likelihood(subject.analysis),
+        Method::AllFrfs => JointEstimate::maximum_likelihood(subject.analysis),
         _ => None,
     };
     let of = across.as_ref().unwrap_or(subject.best);

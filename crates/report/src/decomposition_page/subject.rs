@@ -1,6 +1,6 @@
 //! What the sections of the page are made from.
 
-use jointscope_decomposition::{Analysis, Estimate, Relation};
+use jointscope_decomposition::{Analysis, JointEstimate, Relation};
 use jointscope_fixture::{Fixture, Joint};
 
 /// What the sections of the page are made from.
@@ -8,7 +8,7 @@ use jointscope_fixture::{Fixture, Joint};
 pub(super) struct Subject<'a> {
     pub(super) analysis: &'a Analysis,
     pub(super) fixture: &'a Fixture,
-    pub(super) best: &'a Estimate,
+    pub(super) best: &'a JointEstimate,
 }
 
 impl<'a> Subject<'a> {
