@@ -100,10 +100,10 @@ pub use routes::{
     RouteScore, RouteScores, RouteTruth, Shown, SolidTruth, StruckAnswer, StruckAnswers, StruckCase,
     StruckRole, StruckTruth, TrueName,
 };
-pub use score::{CHANCE, Comparison, Score, VerdictCounts};
+pub use score::{CHANCE, FreshComparison, Score, VerdictCounts};
 pub use seal::{BrokenSeal, SealedTruths};
 pub use sealable::{Filed, Given, Sealable};
-pub use sheet::{Figure, Rate, RoleCount, Sheet, Target, TargetStatus};
+pub use sheet::{Rate, RoleCount, ScoredFigure, Sheet, Target, TargetStatus};
 pub use size::{Size, SizeScore};
 pub use statistics::Share;
 pub use timing::Timing;

@@ -8,7 +8,7 @@ use crate::reliability::Reliability;
 use crate::sheet::Target::{AtLeast, AtMost, Within};
 use crate::sheet::{Keyed, Line, by_key};
 use crate::statistics::middle;
-use crate::{Figure, Judged, Name, PLAIN, Rate, Role, RoleCount, Share, Sheet};
+use crate::{Judged, Name, PLAIN, Rate, Role, RoleCount, ScoredFigure, Share, Sheet};
 use jointscope_diagnosis::Verdict;
 use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -17,7 +17,7 @@ use std::ops::Deref;
 
 /// The same share of cases that were always there and of fresh ones.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Comparison {
+pub struct FreshComparison {
     /// Key of the rate.
     #[serde(skip)]
     pub key: &'static str,
@@ -31,7 +31,7 @@ pub struct Comparison {
     pub agree: bool,
 }
 
-impl Keyed for Comparison {
+impl Keyed for FreshComparison {
     fn key(&self) -> &str {
         self.key
     }
@@ -64,7 +64,7 @@ pub struct Score {
     pub verdicts: Vec<(Role, VerdictCounts)>,
     /// Old against fresh cases; empty where none are fresh.
     #[serde(rename = "old_and_fresh", serialize_with = "by_key")]
-    pub comparisons: Vec<Comparison>,
+    pub comparisons: Vec<FreshComparison>,
 }
 
 fn by_role<S: Serializer>(verdicts: &[(Role, VerdictCounts)], serializer: S) -> Result<S::Ok, S::Error> {
@@ -113,7 +113,7 @@ impl Score {
         let compared = |&(key, ..): &Line| {
             let (old, fresh) = (share(&old, key), share(&fresh, key));
             let probability = old.agreement(fresh);
-            Comparison { key, old, fresh, probability, agree: probability >= CHANCE }
+            FreshComparison { key, old, fresh, probability, agree: probability >= CHANCE }
         };
         let both = !fresh.is_empty() && !old.is_empty();
         let roles = Role::ALL.map(|role| RoleCount {
@@ -126,7 +126,7 @@ impl Score {
             sheet: Sheet {
                 roles: roles.to_vec(),
                 rates: Rate::all(&RATES, |key| share(&all, key)),
-                figures: Figure::all(&FIGURES, |key| figure(&all, key)),
+                figures: ScoredFigure::all(&FIGURES, |key| figure(&all, key)),
                 lines: judged.iter().map(Judged::line).collect(),
             },
             reliability: Reliability::of(visible(&all, Role::Single)),
@@ -269,7 +269,7 @@ impl Display for Score {
         if !self.comparisons.is_empty() {
             writeln!(f, "\nold and fresh cases, probability of a difference as large by chance:")?;
         }
-        for Comparison { key, old, fresh, probability, agree } in &self.comparisons {
+        for FreshComparison { key, old, fresh, probability, agree } in &self.comparisons {
             let word = if *agree { "agree" } else { "differ" };
             let (old, fresh) = ([old.of, old.all], [fresh.of, fresh.all]);
             let (of, of_fresh) =

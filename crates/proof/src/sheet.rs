@@ -113,7 +113,7 @@ impl Rate {
 
 /// A figure that is no share.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Figure {
+pub struct ScoredFigure {
     /// Key in `proof.json`.
     #[serde(skip)]
     pub key: &'static str,
@@ -130,13 +130,13 @@ pub struct Figure {
     pub met: Option<bool>,
 }
 
-impl Figure {
+impl ScoredFigure {
     /// The lines of a sheet, each with its value by its key, and the number of cases behind it.
-    pub(crate) fn all(lines: &[Line], value: impl Fn(&str) -> (Option<f64>, usize)) -> Vec<Figure> {
+    pub(crate) fn all(lines: &[Line], value: impl Fn(&str) -> (Option<f64>, usize)) -> Vec<ScoredFigure> {
         let figure = |&(key, what, target): &Line| {
             let (value, from) = value(key);
             let met = target.zip(value).map(|(target, value)| target.is_met(value));
-            Figure { key, value, from, what, target, met }
+            ScoredFigure { key, value, from, what, target, met }
         };
         lines.iter().map(figure).collect()
     }
@@ -169,7 +169,7 @@ pub struct Sheet {
     pub rates: Vec<Rate>,
     /// Other figures.
     #[serde(serialize_with = "by_key")]
-    pub figures: Vec<Figure>,
+    pub figures: Vec<ScoredFigure>,
     /// Every case.
     #[serde(rename = "cases")]
     pub lines: Vec<CaseLine>,
@@ -182,7 +182,7 @@ impl Sheet {
     }
 
     /// The figure of a key.
-    pub fn figure(&self, key: &str) -> Option<&Figure> {
+    pub fn figure(&self, key: &str) -> Option<&ScoredFigure> {
         self.figures.iter().find(|figure| figure.key == key)
     }
 }
@@ -202,7 +202,7 @@ impl Display for Sheet {
             write_line(f, rate.what, &counted(rate.share), rate.target, status)?;
         }
         writeln!(f, "\nfigures, target:")?;
-        for Figure { what, value, from, target, met, .. } in &self.figures {
+        for ScoredFigure { what, value, from, target, met, .. } in &self.figures {
             let shown = value.map_or_else(|| "no case".to_owned(), |value| format!("{value:.3} of {from}"));
             let status = met.map_or("", |met| if met { "met" } else { "missed" });
             write_line(f, what, &shown, *target, status)?;
@@ -242,7 +242,7 @@ impl Keyed for Rate {
     }
 }
 
-impl Keyed for Figure {
+impl Keyed for ScoredFigure {
     fn key(&self) -> &str {
         self.key
     }

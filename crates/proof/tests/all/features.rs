@@ -4,7 +4,7 @@ use crate::common::opened;
 use jointscope_diagnosis::Observation;
 use jointscope_linalg::Cholesky;
 use jointscope_model_error::{
-    Comparison, ErrorSizes, KINDS, ModelledModes, Pairing, RecordedModes, Recording, Shapes,
+    ErrorSizes, KINDS, ModelledModes, Pairing, RecordedModes, Shapes, SharedFeatures, WeightedFrfs,
 };
 use jointscope_modes::ModesOptions;
 use jointscope_proof::{Case, Plan, Role, Truth};
@@ -12,13 +12,13 @@ use jointscope_proof::{Case, Plan, Role, Truth};
 /// χ² of the features of a recording's modes at the truth, and their number.
 fn chi2_at_the_truth(case: &Case, truth: &Truth) -> (f64, usize) {
     let observation = Observation::new(&case.recorded, |_| true).unwrap();
-    let recording = Recording { frfs: observation.frfs(), weights: observation.weights() };
+    let recording = WeightedFrfs { frfs: observation.frfs(), weights: observation.weights() };
     let expected = |alone: &RecordedModes| alone.expected_by(&case.believed);
     let recorded = RecordedModes::of(recording, &ModesOptions::default(), expected).unwrap();
     let modelled = ModelledModes::of(&truth.fixture, &recorded).unwrap();
     let pairing = Pairing::of(&recorded, &modelled);
     let shapes = Shapes::of(&truth.fixture, &recorded, &modelled.poles()).unwrap();
-    let comparison = Comparison::new(&recorded, &pairing, &modelled, &shapes);
+    let comparison = SharedFeatures::new(&recorded, &pairing, &modelled, &shapes);
     let mut difference = comparison.residual(&recorded, &recorded.features(), &modelled, &pairing);
     let noise = comparison.covariance(&ErrorSizes::from_array([0.0; KINDS]));
     Cholesky::of(comparison.count(), &noise).unwrap().solve_lower_in_place(&mut difference);

@@ -1,6 +1,6 @@
 //! The scores beside their targets.
 
-use jointscope_proof::{Figure, Rate, Score, Share, TargetStatus};
+use jointscope_proof::{Rate, Score, ScoredFigure, Share, TargetStatus};
 
 use super::cells::or_dash;
 use crate::format::fixed;
@@ -47,9 +47,9 @@ pub(super) fn rates(rates: &[Rate]) -> impl Into<Block> {
         .footnote("Intervals by Clopper and Pearson. Missed within chance: the target lies in the interval.")
 }
 
-pub(super) fn figures(figures: &[Figure]) -> impl Into<Block> {
+pub(super) fn figures(figures: &[ScoredFigure]) -> impl Into<Block> {
     let is_met =
-        |figure: &Figure| figure.target.zip(figure.value).map(|(target, value)| target.is_met(value));
+        |figure: &ScoredFigure| figure.target.zip(figure.value).map(|(target, value)| target.is_met(value));
     Table::of(figures)
         .words("figure", |figure| figure.what)
         .numbers("value", "", |figure| or_dash(figure.value.map(|value| fixed(value, 3))))

@@ -7,7 +7,7 @@ use crate::sheet::Line;
 use crate::sheet::Target::{AtLeast, AtMost, Within};
 use crate::size::{Size, SizeScore};
 use crate::statistics::middle;
-use crate::{CaseLine, Figure, Judged, Rate, Role, RoleCount, Share, Sheet};
+use crate::{CaseLine, Judged, Rate, Role, RoleCount, ScoredFigure, Share, Sheet};
 use serde_json::json;
 
 /// Shares where a model is a little wrong everywhere.
@@ -67,7 +67,7 @@ pub(in crate::routes) fn score<T: Nameable>(rates: &[Line], judged: &[Judged<T>]
     let sheet = Sheet {
         roles: roles.collect(),
         rates: Rate::all(rates, |key| share(judged, &sizes, key)),
-        figures: Figure::all(&FIGURES, |key| {
+        figures: ScoredFigure::all(&FIGURES, |key| {
             let unseen = judged.iter().filter(|case| case.is_right()).filter_map(|c| c.fits.unseen);
             match key {
                 "unseen_ratio" => middle(unseen.map(|[refitted, repaired]| refitted / repaired)),

@@ -7,7 +7,7 @@ use crate::sheet::Line;
 use crate::sheet::Target::{AtLeast, AtMost, Within};
 use crate::size::{Size, SizeScore};
 use crate::statistics::middle;
-use crate::{CaseLine, Figure, Found, Judgeable, Name, Rate, Role, RoleCount, Share, Sheet};
+use crate::{CaseLine, Found, Judgeable, Name, Rate, Role, RoleCount, ScoredFigure, Share, Sheet};
 use jointscope_fixture::{Effect, EffectKind};
 use serde_json::json;
 
@@ -44,7 +44,7 @@ pub(crate) fn score(judged: &[SolidJudged]) -> (Sheet, Vec<SizeScore>) {
     let sheet = Sheet {
         roles: roles.to_vec(),
         rates: Rate::all(&RATES, |key| share(judged, &sizes, key)),
-        figures: Figure::all(&FIGURES, |key| {
+        figures: ScoredFigure::all(&FIGURES, |key| {
             let ratio = |[refitted, repaired]: [f64; 2]| refitted / repaired;
             let unseen = shown().filter_map(|case| case.fits.unseen);
             match key {

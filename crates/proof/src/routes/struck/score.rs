@@ -8,7 +8,7 @@ use crate::sheet::Line;
 use crate::sheet::Target::{AtLeast, AtMost, Within};
 use crate::size::{Size, SizeScore};
 use crate::statistics::{middle, quantile};
-use crate::{CaseLine, Figure, Found, Rate, RoleCount, Share, Sheet};
+use crate::{CaseLine, Found, Rate, RoleCount, ScoredFigure, Share, Sheet};
 use serde_json::json;
 
 /// Probability below which it is not told how small it is.
@@ -47,7 +47,7 @@ pub(crate) fn score(judged: &[StruckJudged]) -> (Sheet, Vec<SizeScore>) {
     let sheet = Sheet {
         roles: roles.to_vec(),
         rates: Rate::all(&RATES, |key| share(judged, &sizes, key)),
-        figures: Figure::all(&FIGURES, |key| match key {
+        figures: ScoredFigure::all(&FIGURES, |key| match key {
             "held_out_ratio" => middle(ratios.iter().copied()),
             "held_out_least" => (quantile(&ratios, 0.0), ratios.len()),
             _ => (None, 0),
