@@ -9,7 +9,7 @@
 //!    α(s) = Σ [ρ/(s − λ) + ρ̄/(s − λ̄)] + L/s² + U with the FRFs' variances as weights, residues eliminated. The inverse of the information is the Cramér–Rao bound that the
 //!    standard deviations are taken from; estimates reach it (`tests/all/statistics.rs`, `docs/guide/modes.md`).
 //!
-//! Then each FRF is asked by itself. Where they do not agree on a pole, as after a structure has warmed up between hits, the mode [drifts](Drift): frequency and damping ratio are means
+//! Then each FRF is asked by itself. Where they do not agree on a pole, as after a structure has warmed up between hits, the mode [drifts](DriftingMode): frequency and damping ratio are means
 //! over the FRFs, and their deviation is the scatter of one more.
 //!
 //! Any form of FRF does, any number of responses and references, uneven lines and gaps. Variances are those of the set, or come from coherence and averages, or from the
@@ -63,6 +63,6 @@ pub use error::ModesError;
 pub use indicator::ModeIndicator;
 pub use matching::{ExpectedMode, Match, Matches, match_modes};
 pub use mode::{Mode, mac};
-pub use scatter::Drift;
+pub use scatter::DriftingMode;
 pub use stabilization::{ChartPole, Stability};
 pub use uneven_scale::UnevenScale;

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use crate::likelihood::Likelihood;
 use crate::observed::Observed;
-use crate::scatter::{Drift, Scatter, deviations};
+use crate::scatter::{DriftingMode, Scatter, deviations};
 use crate::selection::{is_inside, worth};
 use crate::settings::quality::VAGUE_DAMPING;
 
@@ -27,7 +27,7 @@ pub struct Mode {
     /// Correlation of the errors of frequency and damping ratio.
     pub correlation: f64,
     /// How far the mode moves from FRF to FRF, where that is more than noise.
-    pub drift: Option<Drift>,
+    pub drift: Option<DriftingMode>,
     /// Residue ρ of the receptance in each FRF, α = Σ ρ/(s − λ) + …: 1/(kg·rad/s) for transverse channels.
     pub residues: Vec<Complex64>,
     /// Standard deviation of each residue's real and of its imaginary part.

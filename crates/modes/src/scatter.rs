@@ -12,7 +12,7 @@ use crate::settings::each_frf::{FEWEST_FRFS, HELD, OWN_STEPS};
 
 /// A mode that is not at one place: its frequencies differ among the FRFs by more than their noise, as those of a structure that warms up between hits do.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Drift {
+pub struct DriftingMode {
     /// Standard deviation of the frequency among the FRFs beyond noise, Hz.
     pub frequency: f64,
     /// Standard deviation of the damping ratio among the FRFs beyond noise.
@@ -33,7 +33,7 @@ pub(crate) struct Value {
 pub(crate) struct Scatter {
     /// Frequency (Hz) and damping ratio from the FRFs one by one, where they do not agree.
     pub means: Option<[Value; 2]>,
-    pub drift: Option<Drift>,
+    pub drift: Option<DriftingMode>,
 }
 
 /// The scatter of each mode of `fit`.
@@ -107,7 +107,7 @@ fn of_mode(by_frf: Vec<(usize, f64, f64, f64, f64)>, half_width: f64) -> Scatter
     }
     Scatter {
         means: Some([frequency.value(), ratio.value()]),
-        drift: Some(Drift {
+        drift: Some(DriftingMode {
             frequency: frequency.between.sqrt(),
             damping_ratio: ratio.between.sqrt(),
             by_frf,
