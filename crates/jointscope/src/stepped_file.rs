@@ -2,7 +2,7 @@
 
 use crate::file::{value, with_sentence};
 use jointscope_findings::{HeldOut, Verdict, by_model};
-use jointscope_nonlinear::{LevelFinding, LevelResult, SteppedDiagnosis, Tried};
+use jointscope_nonlinear::{LevelFinding, LevelResult, SteppedDiagnosis, TriedForm};
 use jointscope_spectra::Dof;
 use jointscope_wording::{Remarks, Says};
 use serde::Serialize;
@@ -54,7 +54,7 @@ struct SteppedFile<'a> {
     levels: &'a [LevelResult],
     levels_explained: Option<[usize; 2]>,
     place: Place<'a>,
-    tried: &'a [Tried],
+    tried: &'a [TriedForm],
     band: (f64, f64),
     remarks: Vec<String>,
 }

@@ -55,7 +55,7 @@ pub use jointscope_findings::{Estimate, HeldOut, Verdict};
 pub use stepped::course::{DampingCourse, FrequencyCourse};
 pub use stepped::diagnosis::{LevelResult, SteppedDiagnosis};
 pub use stepped::level::{Held, SteppedLevel};
-pub use stepped::naming::{LevelEvidence, LevelFinding, Tried};
+pub use stepped::naming::{LevelEvidence, LevelFinding, TriedForm};
 pub use stepped::pooled::pooled;
 pub use stepped::resonance::Resonance;
 pub use time::law::RestoringLaw;

@@ -1,7 +1,7 @@
 //! How a resonance goes with level, beyond the scatter of the fits.
 
 use super::diagnosis::{LevelResult, SteppedDiagnosis};
-use super::naming::Tried;
+use super::naming::TriedForm;
 use crate::settings::levels::{DAMPING_DIFFERS, FREQUENCIES_DIFFER};
 use crate::settings::naming::EXPLAINED_BY_TWO;
 
@@ -72,7 +72,7 @@ impl SteppedDiagnosis {
 
     /// Two laws at one joint that would explain the change with level where no more than one is named: with as many parameters they follow so few
     /// levels whatever the truth is.
-    pub fn unproved_pair(&self) -> Option<&Tried> {
+    pub fn unproved_pair(&self) -> Option<&TriedForm> {
         let two = self.tried.iter().find(|tried| tried.form.contains('+') && tried.share >= EXPLAINED_BY_TWO);
         two.filter(|_| self.findings.len() <= 1)
     }

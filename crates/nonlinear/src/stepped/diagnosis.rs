@@ -3,7 +3,7 @@
 use super::forms::{Fitted, fitted};
 use super::level::{Held, SteppedLevel};
 use super::location::locations;
-use super::naming::{Judged, LevelFinding, Tried, named_law};
+use super::naming::{Judged, LevelFinding, TriedForm, named_law};
 use super::pooled::noisy;
 use super::problem::{Change, Level, Problem};
 use super::resonance::{Resonance, resonance};
@@ -62,7 +62,7 @@ pub struct SteppedDiagnosis {
     /// Probability that levels of a linear structure differ as much, and the ratio of variances.
     pub change: (f64, f64),
     /// Everything tried on all levels, the best first.
-    pub tried: Vec<Tried>,
+    pub tried: Vec<TriedForm>,
     /// The laws found, the strongest first.
     pub findings: Vec<LevelFinding>,
     /// Levels, from the lowest, over which the laws found hold; 0 without laws.
@@ -130,7 +130,7 @@ impl SteppedDiagnosis {
         let rows: Vec<LevelResult> = of_levels.map(row).collect();
         let mean =
             |k: usize| (rows.iter().map(|r| r.nrmse[k].powi(2)).sum::<f64>() / rows.len() as f64).sqrt();
-        let mut tried: Vec<Tried> = judged.iter().flat_map(Judged::tried).collect();
+        let mut tried: Vec<TriedForm> = judged.iter().flat_map(Judged::tried).collect();
         tried.sort_by(|a, b| a.nrmse.total_cmp(&b.nrmse));
         let omega = TAU * resonances[0].frequency.0;
         let (refitted, unplaced) = placed(fixture, problem, &linear.change, omega);

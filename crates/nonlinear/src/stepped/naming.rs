@@ -16,7 +16,7 @@ use serde::Serialize;
 
 /// A form tried at a component of a joint.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Tried {
+pub struct TriedForm {
     /// Names of the effects, `linear` for none.
     #[serde(rename = "kind")]
     pub form: String,
@@ -67,8 +67,8 @@ impl Judged {
         self.laws.iter().fold(&self.linear, |best, fit| if fit.nrmse < best.nrmse { fit } else { best })
     }
 
-    pub(super) fn tried(&self) -> impl Iterator<Item = Tried> {
-        std::iter::once(&self.linear).chain(&self.laws).map(|fit| Tried {
+    pub(super) fn tried(&self) -> impl Iterator<Item = TriedForm> {
+        std::iter::once(&self.linear).chain(&self.laws).map(|fit| TriedForm {
             joint: self.problem.joint.clone(),
             dof: self.problem.dof,
             form: fit.name(),
