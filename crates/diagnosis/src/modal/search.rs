@@ -82,11 +82,21 @@ impl Searcher<'_> {
             singles = best_of_each(singles.into_iter().chain(again).collect());
             far.retain(|c| singles.iter().all(|single| single.names.last() != Some(c)));
         }
+        let (best, more) = self.with_effects_added(&start, &singles);
+        let (best, instead) = self.with_effects_exchanged(best, &singles, &none);
+        let without = instead.iter().map(|effect| effect.without).collect();
+        let (alternatives, elsewhere) = instead.into_iter().map(|i| (i.names, i.elsewhere)).unzip();
+        ModalSearch { none, best, singles, far, more, alternatives, elsewhere, without }
+    }
+
+    /// The best hypothesis, effects added to `start`, the fixture by itself, one after another while each gains what it has to; and what was tried of several effects together.
+    fn with_effects_added(&self, start: &Named, singles: &[Named]) -> (Named, Vec<Named>) {
+        let none = &start.fit;
         let mut best = start.clone();
         let mut more = Vec::new();
         for count in 1..=self.settings.effects {
             // What the fixture itself explains, and no effect alone improves, needs no pair.
-            if count > 1 && best.names.is_empty() && self.is_adequate(&none) {
+            if count > 1 && best.names.is_empty() && self.is_adequate(none) {
                 break;
             }
             // What explains modes and lines needs no company that modes could tell.
@@ -99,36 +109,49 @@ impl Searcher<'_> {
                 }
                 self.watch.stage("comparing several effects together by modes");
             }
-            let ranked = self.with_one_more(count, (&best, &start), &singles);
-            let Some(first) =
-                ranked.iter().take(self.settings.tried).find(|named| self.is_told(named, &none))
+            let ranked = self.with_one_more(count, (&best, start), singles);
+            let Some(first) = ranked.iter().take(self.settings.tried).find(|named| self.is_told(named, none))
             else {
                 break;
             };
             if count > 1 {
                 more.extend(ranked.iter().take(self.settings.tried).cloned());
             }
-            // A pair may be needed where neither effect alone is, or one of them where the other has led it out of a false minimum.
-            let mut led_out = false;
-            if count > 1 && self.gains(first, &best) {
-                let statements = self.statements(&first.names);
-                let parts =
-                    statements.iter().filter_map(|statement| self.without(first, statement, best.fit.ln));
-                let is_better = |fewer: &Named| {
-                    fewer.fit.ln > best.fit.ln && self.gains(fewer, &best) && self.is_told(fewer, &none)
-                };
-                if let Some(fewer) = highest(parts).filter(is_better) {
-                    (best, led_out) = (fewer, true);
-                }
-            }
+            let fewer = if count > 1 { self.with_fewer_led_out(first, &best, none) } else { None };
+            let led_out = fewer.is_some();
+            best = fewer.unwrap_or(best);
             if self.gains(first, &best) {
                 best = first.clone();
             } else if count > 1 && !led_out {
                 break;
             }
         }
+        (best, more)
+    }
+
+    /// What a hypothesis `first` of several effects together comes to without one of them, where that gains over the `best` so far: a pair may be needed where neither effect alone is, or
+    /// one of them where the other has led it out of a false minimum.
+    fn with_fewer_led_out(&self, first: &Named, best: &Named, none: &ModalFit) -> Option<Named> {
+        if !self.gains(first, best) {
+            return None;
+        }
+        let statements = self.statements(&first.names);
+        let parts = statements.iter().filter_map(|statement| self.without(first, statement, best.fit.ln));
+        let is_better = |fewer: &Named| {
+            fewer.fit.ln > best.fit.ln && self.gains(fewer, best) && self.is_told(fewer, none)
+        };
+        highest(parts).filter(is_better)
+    }
+
+    /// The best hypothesis, effects exchanged for what explains more in the stead of one of them, and what may stand instead of each.
+    fn with_effects_exchanged(
+        &self,
+        mut best: Named,
+        singles: &[Named],
+        none: &ModalFit,
+    ) -> (Named, Vec<InStead>) {
         self.watch.stage("asking by modes what else would explain a finding");
-        let mut instead = self.in_stead_of_each(&best, &singles, &none);
+        let mut instead = self.in_stead_of_each(&best, singles, none);
         // What explains more in the stead of one effect, beside the others, is what was searched for.
         for _ in 0..self.settings.exchanges {
             let stated = self.statements(&best.names).len();
@@ -137,11 +160,9 @@ impl Searcher<'_> {
             let others = instead.iter().flat_map(|effect| effect.names.iter().chain(&effect.elsewhere));
             let Some(other) = highest(others.filter(|other| higher(other)).cloned()) else { break };
             best = other;
-            instead = self.in_stead_of_each(&best, &singles, &none);
+            instead = self.in_stead_of_each(&best, singles, none);
         }
-        let without = instead.iter().map(|effect| effect.without).collect();
-        let (alternatives, elsewhere) = instead.into_iter().map(|i| (i.names, i.elsewhere)).unzip();
-        ModalSearch { none, best, singles, far, more, alternatives, elsewhere, without }
+        (best, instead)
     }
 
     /// Whether a hypothesis explains what `none`, the fixture by itself, does not, by as much as its names have to.
