@@ -72,8 +72,27 @@ pub(super) fn poles_by_frf(
         return None;
     }
     let responses = distinct(observation.pairs().iter().map(|pair| &pair.response));
+    let cells = cells(base, &compared, (&struck, &partners), &responses);
+    let half_widths = compared.iter().map(|&r| base.modes[r].pole.damping_ratio).collect();
+    let table = Table {
+        cells,
+        modes: compared,
+        half_widths,
+        responses: responses.len(),
+        references: references.len(),
+    };
+    Some(PolesByFrf { modes: base.clone(), table })
+}
+
+/// ln of the natural frequency of each `compared` mode over that of `base`, FRF by FRF.
+fn cells(
+    base: &RecordedModes,
+    compared: &[usize],
+    (struck, partners): (&[Option<ReferenceModes>], &[Vec<Option<usize>>]),
+    responses: &[Channel],
+) -> Vec<Cell> {
     let mut cells = Vec::new();
-    for (reference, (struck, of)) in struck.iter().zip(&partners).enumerate() {
+    for (reference, (struck, of)) in struck.iter().zip(partners).enumerate() {
         let Some(ReferenceModes { part, modes }) = struck else { continue };
         let alone = match part.pairs().len() {
             1 => vec![Some(modes.clone())],
@@ -94,15 +113,7 @@ pub(super) fn poles_by_frf(
             }
         }
     }
-    let half_widths = compared.iter().map(|&r| base.modes[r].pole.damping_ratio).collect();
-    let table = Table {
-        cells,
-        modes: compared,
-        half_widths,
-        responses: responses.len(),
-        references: references.len(),
-    };
-    Some(PolesByFrf { modes: base.clone(), table })
+    cells
 }
 
 /// Probability of natural frequencies of the `compared` modes of `base` that differ as much between references by chance.

@@ -245,8 +245,13 @@ impl<'a> Pattern<'a> {
                 }
             }
         }
+        Some(self.inversion(s, driving, &column))
+    }
+
+    /// How the scalar of a line becomes the missing component, where the site answers by `driving`.
+    fn inversion(&self, s: Complex64, driving: Complex64, column: &[Complex64; MOST]) -> Inversion {
         let plain = Inversion { sign: 1.0, feedback: Complex64::ZERO, driving: Complex64::ZERO };
-        Some(match &self.action {
+        match &self.action {
             Action::Body => Inversion { feedback: driving, ..plain },
             // −1/(1/c + rᵀkr) acts through b = Dᵀkr: what is sought is c.
             Action::Series { end, .. } => Inversion { sign: -1.0, feedback: driving - column[*end], ..plain },
@@ -257,7 +262,7 @@ impl<'a> Pattern<'a> {
                 Inversion { driving: s * s * self.values[*index], ..plain }
             }
             _ => plain,
-        })
+        }
     }
 
     /// The receptances of FRF `k`.
