@@ -4,6 +4,7 @@ use super::subject::Subject;
 use crate::format::{percent, significant};
 use crate::section::{Card, Section};
 use crate::table::Table;
+use jointscope_diagnosis::{Diagnosis, HeldOut};
 use jointscope_wording::held_out_part;
 
 pub(super) fn section(subject: &Subject) -> Section {
@@ -35,37 +36,38 @@ pub(super) fn section(subject: &Subject) -> Section {
         None => section.paragraph(
             "There were too few lines to hold any out of the fit: the errors above are of what was fitted.",
         ),
-        Some(held_out) => {
-            let same = match (held_out.same_findings, diagnosis.findings.is_empty()) {
-                (None, _) => "",
-                (Some(true), true) => "Without them the search finds nothing either.",
-                (Some(true), false) => "Without them the search finds the same names.",
-                (Some(false), _) => {
-                    "Without them the search finds other names: the findings hang on what was held out."
-                }
-            };
-            let what: Vec<String> = held_out.what.iter().map(|what| held_out_part(what)).collect();
-            let mut cards = vec![Card::text("Held out, refitted", percent(held_out.nrmse_refitted, 2))];
-            if !diagnosis.findings.is_empty() {
-                cards.push(
-                    Card::text("Held out, repaired", percent(held_out.nrmse_repaired, 2))
-                        .note(gain(held_out.nrmse_refitted, held_out.nrmse_repaired)),
-                );
-            }
-            let searched = match diagnosis.model_error {
-                Some(_) => {
-                    "the search was done again without them, among the effects that came nearest with them"
-                }
-                None => "the whole search was done again without them",
-            };
-            section
-                .paragraph(format!(
-                    "Held out were {}: {searched}, and its models then predicted them. {same}",
-                    what.join(", ")
-                ))
-                .cards(cards)
-        }
+        Some(held_out) => with_held_out(section, diagnosis, held_out),
     }
+}
+
+/// What was held out of the fit, how the models predicted it, and whether the search finds the same without it.
+fn with_held_out(section: Section, diagnosis: &Diagnosis, held_out: &HeldOut) -> Section {
+    let same = match (held_out.same_findings, diagnosis.findings.is_empty()) {
+        (None, _) => "",
+        (Some(true), true) => "Without them the search finds nothing either.",
+        (Some(true), false) => "Without them the search finds the same names.",
+        (Some(false), _) => {
+            "Without them the search finds other names: the findings hang on what was held out."
+        }
+    };
+    let what: Vec<String> = held_out.what.iter().map(|what| held_out_part(what)).collect();
+    let mut cards = vec![Card::text("Held out, refitted", percent(held_out.nrmse_refitted, 2))];
+    if !diagnosis.findings.is_empty() {
+        cards.push(
+            Card::text("Held out, repaired", percent(held_out.nrmse_repaired, 2))
+                .note(gain(held_out.nrmse_refitted, held_out.nrmse_repaired)),
+        );
+    }
+    let searched = match diagnosis.model_error {
+        Some(_) => "the search was done again without them, among the effects that came nearest with them",
+        None => "the whole search was done again without them",
+    };
+    section
+        .paragraph(format!(
+            "Held out were {}: {searched}, and its models then predicted them. {same}",
+            what.join(", ")
+        ))
+        .cards(cards)
 }
 
 pub(super) fn gain(refitted: f64, repaired: f64) -> String {
