@@ -13,7 +13,7 @@ use jointscope::proof::{
     Timing, Truth,
 };
 use jointscope::report::{ProofContext, ProofResults, proof_page};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use crate::input::FixtureFile;
 use crate::origin;
@@ -41,16 +41,11 @@ pub(super) fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
     let digest = concealed.truths.digest().to_owned();
     tell(&format!("truths sealed, SHA-256 {digest}"));
     if let Some(directory) = &arguments.output {
-        // A directory that cannot be written to is found out before the work, not after it.
-        let seal = json!({ "plan": concealed.plan, "sealed_truths_sha256": digest });
-        Outputs::one(directory.join("seal.json"), &seal)?;
+        write_seal(directory, &concealed)?;
     }
     let threads = arguments.workers();
     let answers = diagnosed(arguments, &concealed, threads)?;
-    let baselines = {
-        let bar = progress::cases(concealed.cases.laboratory.len(), "looked up and updated");
-        Baseline::all(&concealed.cases.laboratory, threads, |done| bar.set_position(done as u64))
-    };
+    let baselines = baselines(&concealed, threads);
     if let Some(directory) = &arguments.output {
         // On disk before the truths are opened.
         Outputs::one(directory.join("answers.json"), &answers.to_value())?;
@@ -82,11 +77,8 @@ pub(super) fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
             pages: !arguments.no_case_pages,
         };
         let results = ProofResults { score: &score, methods: &methods, judged: &judged, routes: &routes };
-        let mut outputs = Outputs::default();
-        outputs.add(directory.join("report.html"), proof_page(&results, &context).map_err(Refusal::new)?);
-        outputs.add_json(directory.join("proof.json"), &value);
-        outputs.add_json(directory.join("timing.json"), &timing.to_value());
-        outputs.write()?;
+        let page = proof_page(&results, &context).map_err(Refusal::new)?;
+        write_results(directory, page, &value, &timing)?;
     }
     if arguments.json {
         return Ok(pretty(&value).trim_end().to_owned());
@@ -102,6 +94,28 @@ pub(super) fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
         text.push_str(&format!("\n{}", directory.join("report.html").display()));
     }
     Ok(text.trim_end().to_owned())
+}
+
+/// The page of a proof, its score and its timing, written into a directory.
+fn write_results(directory: &Path, page: String, score: &Value, timing: &Timing) -> Result<(), Refusal> {
+    let mut outputs = Outputs::default();
+    outputs.add(directory.join("report.html"), page);
+    outputs.add_json(directory.join("proof.json"), score);
+    outputs.add_json(directory.join("timing.json"), &timing.to_value());
+    outputs.write()
+}
+
+/// What is sealed before the first answer: the plan and the digest of the truths.
+fn write_seal(directory: &Path, concealed: &Concealed) -> Result<(), Refusal> {
+    // A directory that cannot be written to is found out before the work, not after it.
+    let seal = json!({ "plan": concealed.plan, "sealed_truths_sha256": concealed.truths.digest() });
+    Outputs::one(directory.join("seal.json"), &seal)
+}
+
+/// The updated and the looked-up models of the laboratory's cases, to hold the diagnosis against.
+fn baselines(concealed: &Concealed, threads: usize) -> Vec<Option<Baseline>> {
+    let bar = progress::cases(concealed.cases.laboratory.len(), "looked up and updated");
+    Baseline::all(&concealed.cases.laboratory, threads, |done| bar.set_position(done as u64))
 }
 
 /// The laboratory's cases judged, each with its truth.
