@@ -1,6 +1,7 @@
 //! One hypothesis at its most probable parameters and sizes of error.
 
 use crate::Hypothesis;
+use crate::modal::descent::Rest;
 use crate::modal::prior::Prior;
 use crate::modal::problem::{Iterate, PairedModes, Problem};
 use crate::modal::turns::{Turns, are_alike};
@@ -180,23 +181,14 @@ impl Problem<'_> {
         for round in 0..MOST_ROUNDS {
             // What fails on the way takes nothing from what was found before.
             let Some(end) = self.settled(&paired, point, derivatives, (priors, &sizes)) else { break };
-            (point, derivatives) = (end.point, end.derivatives);
             let before = best.as_ref().map(|fit| fit.ln);
             let asked = end.evidence.sizes;
             let next = asked.larger(sizes.times(MOST_SHRINKAGE));
-            // The evidence at sizes that are asked for says nothing of a point from where the parameters are still to move, or the sizes to shrink. At its own a fit may stand still all the
-            // same.
             let settled = next == asked;
             let same = settled && are_alike(&next, &sizes);
             let last = round + 1 == MOST_ROUNDS;
-            let evidence = match settled && end.promised < STANDS_STILL {
-                true => Some(end.evidence),
-                false => (end.promised_there < STANDS_STILL).then_some(ModelEvidence {
-                    ln: end.evidence.ln_at_start,
-                    sizes,
-                    ..end.evidence
-                }),
-            };
+            let evidence = end.evidence_at_rest(settled, sizes);
+            (point, derivatives) = (end.point, end.derivatives);
             let stands = evidence.is_some();
             sizes = turns.toward(&next, &sizes);
             let ln = end.evidence.ln + paired.pairing.alone() - rarity;
@@ -250,6 +242,21 @@ impl Problem<'_> {
             paired = anew;
         }
         more_probable(otherwise, best).or(stale)
+    }
+}
+
+impl Rest {
+    /// The evidence that a fit at these `sizes` has where it stands still: at the sizes that are asked for, if they have `settled`, or else at its own. What is asked for says nothing of a
+    /// point from where the parameters are still to move, or the sizes to shrink; at its own sizes a fit may stand still all the same.
+    fn evidence_at_rest(&self, settled: bool, sizes: ErrorSizes) -> Option<ModelEvidence> {
+        if settled && self.promised < STANDS_STILL {
+            return Some(self.evidence);
+        }
+        (self.promised_there < STANDS_STILL).then_some(ModelEvidence {
+            ln: self.evidence.ln_at_start,
+            sizes,
+            ..self.evidence
+        })
     }
 }
 
