@@ -97,12 +97,7 @@ impl Diagnosis {
         let work = Work::of(options.settings.work, options.time_limit).for_models_of(coordinates);
         let work = Arc::new(work);
         let observation = Observation::new(frfs, asked)?.counted(Arc::clone(&work));
-        // Each record's gain moves within what is stated of all of them, on lines and by modes; of a baseline and what follows it they are not the same.
-        let names: Vec<String> = frfs.pairs().iter().map(ToString::to_string).collect();
-        let fixture = &match options.baseline {
-            None => fixture.clone().with_records(names.iter().map(String::as_str)),
-            Some(_) => fixture.clone(),
-        };
+        let fixture = &with_gains_of_records(fixture, frfs, options);
         let nominal = Hypothesis::nominal(fixture, options.exact);
         nominal.predict(&observation)?;
         let contradictory = contradictory(&observation, &nominal);
@@ -127,12 +122,7 @@ impl Diagnosis {
                 Some(baseline) => {
                     let baseline = Observation::new(baseline, in_use)?;
                     let baseline = baseline.reduced(|_| true, agreeing).unwrap_or(baseline);
-                    if baseline.pairs() != observation.pairs() {
-                        return Err(DiagnosisError::Baseline);
-                    }
-                    let pairs = searched.pairs();
-                    let part = baseline.reduced(|_| true, |pair| pairs.contains(pair));
-                    routes::since(&fitter, part.unwrap_or(baseline), fixture, options.exact)?
+                    changed_since(&fitter, &observation, baseline, (fixture, options.exact))?
                 }
                 None => routes::judged(&fitter, fixture, options)?,
             };
@@ -281,4 +271,28 @@ impl Diagnosis {
         [&self.search.nominal, &self.search.refitted, &self.search.repaired]
             .map(|fit| fit.chi2_per_dof(&self.observation))
     }
+}
+
+/// The fixture, each record's gain moving within what is stated of all of them, on lines and by modes; of a baseline and what follows it they are not the same.
+fn with_gains_of_records(fixture: &Fixture, frfs: &FrfSet, options: &DiagnosisOptions) -> Fixture {
+    if options.baseline.is_some() {
+        return fixture.clone();
+    }
+    let names: Vec<String> = frfs.pairs().iter().map(ToString::to_string).collect();
+    fixture.clone().with_records(names.iter().map(String::as_str))
+}
+
+/// What has changed in the whole `observation` since a `baseline`, of which the fitter's part is searched.
+fn changed_since(
+    fitter: &Fitter,
+    observation: &Observation,
+    baseline: Observation,
+    (fixture, exact): (&Fixture, bool),
+) -> Result<Parts, DiagnosisError> {
+    if baseline.pairs() != observation.pairs() {
+        return Err(DiagnosisError::Baseline);
+    }
+    let pairs = fitter.observation.pairs();
+    let part = baseline.reduced(|_| true, |pair| pairs.contains(pair));
+    routes::since(fitter, part.unwrap_or(baseline), fixture, exact)
 }
