@@ -18,7 +18,7 @@
 //! * [`each`]: many fits on all threads.
 //!
 //! ```
-//! use jointscope_inference::{LeastSquares, NormalEquations, DerivativePrecision, Settings, descend};
+//! use jointscope_inference::{DerivativePrecision, LeastSquares, NormalEquations, Settings, descend};
 //!
 //! // y = exp(−q x) at three abscissae; q from a start far off.
 //! struct Decay;

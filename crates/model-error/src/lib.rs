@@ -22,7 +22,9 @@
 //! ```
 //! use jointscope_fixture::Fixture;
 //! use jointscope_lumped::{Instrument, synthesize};
-//! use jointscope_model_error::{SharedFeatures, ErrorSizes, Expected, Linear, ModelledModes, Pairing, RecordedModes, WeightedFrfs, Shapes};
+//! use jointscope_model_error::{
+//!     ErrorSizes, Expected, Linear, ModelledModes, Pairing, RecordedModes, Shapes, SharedFeatures, WeightedFrfs,
+//! };
 //! use jointscope_modes::ModesOptions;
 //! use jointscope_spectra::{FrfPair, SpectralLines};
 //!
