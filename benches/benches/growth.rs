@@ -1,8 +1,10 @@
-//! How time, memory and output grow with lines, FRFs and bodies: the table of `docs/records/2026-11-23-growth.md`.
+//! How time, memory and output grow with lines, FRFs and bodies: the table of
+//! `docs/records/2026-11-23-growth.md`.
 //!
-//! Each row but the first is a run of the program (`target/release/jointscope`, built first) on files made here, with one thread and with two. Processor time is
-//! what the kernel counts of ended children, memory the largest resident set; both from `/proc`, so that elsewhere they are not shown. A run that takes too long is
-//! ended. Names of rows after `--` choose among them: `-- modes`.
+//! Each row but the first is a run of the program (`target/release/jointscope`, built first) on files made
+//! here, with one thread and with two. Processor time is what the kernel counts of ended children, memory the
+//! largest resident set; both from `/proc`, so that elsewhere they are not shown. A run that takes too long
+//! is ended. Names of rows after `--` choose among them: `-- modes`.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 use jointscope_benches::cases::{self, Attachments};
@@ -98,7 +100,8 @@ struct Test {
 }
 
 impl Test {
-    /// A chain of blocks to which a mass was added on the first one that its fixture does not have, where it is longer than two.
+    /// A chain of blocks to which a mass was added on the first one that its fixture does not have, where it
+    /// is longer than two.
     fn of(folder: &Path, (bodies, responses): (usize, usize), (references, lines): (usize, usize)) -> Self {
         let [fixture, recording] = ["json", "uff"]
             .map(|kind| folder.join(format!("{bodies}-{responses}-{references}-{lines}.{kind}")));

@@ -13,7 +13,8 @@ const MASS: f64 = 0.05;
 fn map(criterion: &mut Criterion) {
     let observation = Observation::new(&cases::test_of_two_blocks(400), |_| true).unwrap();
     let fixture = cases::two_blocks();
-    // The recording has no such mass: a fixture that claims one disagrees with it as strongly as one that lacks it.
+    // The recording has no such mass: a fixture that claims one disagrees with it as strongly as one that
+    // lacks it.
     let claimed = Effect::new(EffectKind::AddedMass, Place::Body("B1".into()), None, &[0.15, MASS]);
     let claims = fixture.with_physics(vec![claimed]).unwrap();
     let nominal = Hypothesis::nominal(&claims, false);

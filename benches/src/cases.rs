@@ -135,7 +135,8 @@ pub fn decomposition(count: usize) -> (Vec<ComplexMatrix2>, Compliances) {
     (h41, compliances)
 }
 
-/// The floor under every decomposition: reads what it reads and writes what it writes, the sum of the five matrices.
+/// The floor under every decomposition: reads what it reads and writes what it writes, the sum of the five
+/// matrices.
 pub fn floor(h41: &[ComplexMatrix2], sides: &Compliances, out: &mut [ComplexMatrix2]) {
     let n = out.len();
     let (h41, a21, a22) = (&h41[..n], &sides.alpha21[..n], &sides.alpha22[..n]);
@@ -145,7 +146,8 @@ pub fn floor(h41: &[ComplexMatrix2], sides: &Compliances, out: &mut [ComplexMatr
     }
 }
 
-/// The two blocks' four FRFs on `count` lines with a little noise and its variances, as a test would give them.
+/// The two blocks' four FRFs on `count` lines with a little noise and its variances, as a test would give
+/// them.
 pub fn test_of_two_blocks(count: usize) -> FrfSet {
     noisy(&two_blocks(), &four_pairs(), count)
 }
@@ -168,8 +170,8 @@ fn noisy(fixture: &Fixture, pairs: &[FrfPair], count: usize) -> FrfSet {
         .expect("finite values and positive variances")
 }
 
-/// A test of a free chain with a mass on the first block that its fixture does not have, as the bytes of a universal file: FRFs between the first so many of its points
-/// and so many of the last.
+/// A test of a free chain with a mass on the first block that its fixture does not have, as the bytes of a
+/// universal file: FRFs between the first so many of its points and so many of the last.
 pub fn test_of_a_chain(bodies: usize, (responses, references): (usize, usize), count: usize) -> Vec<u8> {
     let mass = Effect::new(EffectKind::AddedMass, Place::Body("B0".to_owned()), None, &[0.0, ADDED_MASS]);
     let fixture =

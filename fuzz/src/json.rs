@@ -18,7 +18,8 @@ impl Random {
     }
 }
 
-/// Changes the first `size` bytes of `data`, at most `limit` of them; answers with how many there are now. What is no JSON, or would not fit, has its bytes changed.
+/// Changes the first `size` bytes of `data`, at most `limit` of them; answers with how many there are now.
+/// What is no JSON, or would not fit, has its bytes changed.
 pub fn mutated(data: &mut [u8], size: usize, limit: usize, seed: u32) -> usize {
     let mut random = Random(seed.into());
     let parsed = match random.below(16) {

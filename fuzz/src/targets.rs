@@ -1,5 +1,6 @@
-//! What must hold for any input: nothing panics, what is refused is refused by an error, and what is answered is finite and means what was read. The tests of
-//! the crate `jointscope` ask it of the corpus beside this file.
+//! What must hold for any input: nothing panics, what is refused is refused by an error, and what is answered
+//! is finite and means what was read. The tests of the crate `jointscope` ask it of the corpus beside this
+//! file.
 
 use jointscope_comparison::{Comparison, ComparisonOptions, Decomposed};
 use jointscope_estimation::{
@@ -153,7 +154,8 @@ fn finite(frfs: &FrfSet) {
     }
 }
 
-/// `stiffness.json`, or `{"diagnosis": …, "repaired": …}`: what `compare` and `export` make of it has no number that is none.
+/// `stiffness.json`, or `{"diagnosis": …, "repaired": …}`: what `compare` and `export` make of it has no
+/// number that is none.
 pub fn answers(bytes: &[u8]) {
     let Ok(value) = serde_json::from_slice::<Value>(bytes) else { return };
     let options = ExportOptions { by_line: true, anyway: true, ..ExportOptions::default() };

@@ -28,7 +28,8 @@ impl Band {
     /// Indices of the frequencies (ascending, Hz) in the band.
     ///
     /// # Errors
-    /// [`AveragingError::EmptyBand`] where there are none, [`AveragingError::NoLines`] where there are none at all.
+    /// [`AveragingError::EmptyBand`] where there are none, [`AveragingError::NoLines`] where there are none
+    /// at all.
     pub fn lines(&self, frequencies: &[f64]) -> Result<std::ops::Range<usize>, AveragingError> {
         let start = frequencies.partition_point(|&f| f < self.from);
         let end = frequencies.partition_point(|&f| f <= self.to);
@@ -54,7 +55,8 @@ const SMALLEST_SHARE: f64 = 0.2;
 /// They must come from a model of the noise, not from the values.
 ///
 /// # Errors
-/// [`AveragingError::NoLines`] where there are no lines or no finite deviations, [`AveragingError::Lengths`] where a quantity has not one for each line.
+/// [`AveragingError::NoLines`] where there are no lines or no finite deviations, [`AveragingError::Lengths`]
+/// where a quantity has not one for each line.
 pub fn quietest_band(frequencies: &[f64], deviations: &[Vec<f64>]) -> Result<Band, AveragingError> {
     let n = frequencies.len();
     if n == 0 || deviations.is_empty() {

@@ -1,8 +1,8 @@
 //! Averages over spectral lines of a stiffness or damping spectrum (eq 34–36, 39, 42).
 //!
-//! One unknown and one equation a line make the least squares of eq (34) and (39) an identity; over the lines of a band
-//! they are a plain mean (eq 35, 42). The noise is anything but equal over the lines, so there is a weighted
-//! mean beside it, its weights one over the variances.
+//! One unknown and one equation a line make the least squares of eq (34) and (39) an identity; over the lines
+//! of a band they are a plain mean (eq 35, 42). The noise is anything but equal over the lines, so there is a
+//! weighted mean beside it, its weights one over the variances.
 //!
 //! ```
 //! use jointscope_averaging::{mean, weighted_mean};

@@ -116,7 +116,8 @@ pub fn consistent_mass(mass_per_length: f64, length: f64) -> Matrix4 {
     .map(|row| row.map(|e| factor * e))
 }
 
-/// Mass of a joint, kg, on (y, θ) of both ends: consistent along its length, m, and half of it at each end where it has none.
+/// Mass of a joint, kg, on (y, θ) of both ends: consistent along its length, m, and half of it at each end
+/// where it has none.
 pub fn mass_of_ends(mass: f64, length: f64) -> Matrix4 {
     if length > 0.0 {
         return consistent_mass(mass / length, length);

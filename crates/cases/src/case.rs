@@ -55,9 +55,11 @@ pub enum CasesError {
     None(&'static str),
 }
 
-/// The cases of a list: a line each, the fixture and its recordings with commas between them. Empty lines, and lines that begin with `#`, say nothing.
+/// The cases of a list: a line each, the fixture and its recordings with commas between them. Empty lines,
+/// and lines that begin with `#`, say nothing.
 ///
-/// A case is called by the path of its first recording, without what all have in common and without its ending; where several fixtures go with one recording, by the fixture too.
+/// A case is called by the path of its first recording, without what all have in common and without its
+/// ending; where several fixtures go with one recording, by the fixture too.
 ///
 /// # Errors
 /// See [`CasesError`].
@@ -100,7 +102,8 @@ pub fn listed(text: &str) -> Result<Vec<Case>, CasesError> {
     Ok(cases)
 }
 
-/// The cases of folders, in the order of their names: each that holds recordings is one. A folder with recordings and no fixture, or several, is a case with a fault.
+/// The cases of folders, in the order of their names: each that holds recordings is one. A folder with
+/// recordings and no fixture, or several, is a case with a fault.
 ///
 /// # Errors
 /// No folder holds recordings.

@@ -11,13 +11,15 @@ pub struct DecomposedCase {
     pub joint: String,
     /// `sound`, `with_care` or `unusable`.
     pub verdict: String,
-    /// k11, k12, k22, c11, c12, c22 of the joint from all FRFs with their deviations, SI; where there is no such fit, what is known of them otherwise is in the file.
+    /// k11, k12, k22, c11, c12, c22 of the joint from all FRFs with their deviations, SI; where there is no
+    /// such fit, what is known of them otherwise is in the file.
     pub numbers: [Option<(f64, f64)>; 6],
     /// The joint's mass and its deviation, kg, where the FRFs show one.
     pub mass: Option<(f64, f64)>,
     /// The most probable law over frequency, and its probability.
     pub law: Option<(String, Option<f64>)>,
-    /// The law that the numbers are of, and the frequency at which they are stated, Hz; where the file says it.
+    /// The law that the numbers are of, and the frequency at which they are stated, Hz; where the file says
+    /// it.
     pub follows: Option<(String, f64)>,
     /// The loss factor of k11 of a structural joint, and its deviation.
     pub loss_factor: Option<(f64, f64)>,

@@ -1,7 +1,10 @@
-//! Many tests at once: lists of cases, shares of them for the jobs of a cluster, and what came of each in one table.
+//! Many tests at once: lists of cases, shares of them for the jobs of a cluster, and what came of each in one
+//! table.
 //!
-//! A [`Case`] is a fixture and the recordings of one test of it. [`listed`] reads cases from a list, [`of_folders`] makes them of folders, [`Shard`] takes a share. A [`Summary`] has a row a
-//! case, made of what `diagnosis.json` or `stiffness.json` says of it, and is written as CSV. This crate reads and writes no files.
+//! A [`Case`] is a fixture and the recordings of one test of it. [`listed`] reads cases from a list,
+//! [`of_folders`] makes them of folders, [`Shard`] takes a share. A [`Summary`] has a row a case, made of
+//! what `diagnosis.json` or `stiffness.json` says of it, and is written as CSV. This crate reads and writes
+//! no files.
 //!
 //! ```
 //! use jointscope_cases::{Shard, listed};

@@ -16,7 +16,8 @@ pub struct Shard {
 pub struct ShardError;
 
 impl Shard {
-    /// Whether the case at this place (from 0) is in the share. Neighbours, which are often alike in cost, go to different shares.
+    /// Whether the case at this place (from 0) is in the share. Neighbours, which are often alike in cost, go
+    /// to different shares.
     pub fn has(&self, place: usize) -> bool {
         place % self.count == self.index - 1
     }

@@ -116,7 +116,8 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// How many cases came to what, in the order in which that is first seen: `7 explained, 2 consistent, 1 refused`.
+    /// How many cases came to what, in the order in which that is first seen:
+    /// `7 explained, 2 consistent, 1 refused`.
     pub fn counts(&self) -> Vec<(&str, usize)> {
         let mut counts: Vec<(&str, usize)> = Vec::new();
         for row in &self.rows {
@@ -140,7 +141,8 @@ impl Summary {
         format!("{} {cases}: {}", self.rows.len(), counts.join(", "))
     }
 
-    /// The table with commas between cells: a row of headings, then a row a case. `state` is `done`, `refused` or `not done`; of a case without an answer `says` holds why.
+    /// The table with commas between cells: a row of headings, then a row a case. `state` is `done`,
+    /// `refused` or `not done`; of a case without an answer `says` holds why.
     pub fn csv(&self) -> String {
         let own = match self.command {
             Command::Diagnose => DiagnosedCase::HEAD.map(str::to_owned).to_vec(),

@@ -16,7 +16,8 @@ pub struct ChannelCheck {
     pub channel: String,
     /// Number of its FRFs.
     pub frfs: usize,
-    /// Median level of its FRFs against the fixture's, over that of all others; `None` where there are no others or no fixture's.
+    /// Median level of its FRFs against the fixture's, over that of all others; `None` where there are no
+    /// others or no fixture's.
     pub level: Option<f64>,
     /// Whether all its FRFs have the opposite sign to the fixture's, and the others have not.
     pub turned: bool,
@@ -26,7 +27,8 @@ pub struct ChannelCheck {
     pub odd: Vec<String>,
 }
 
-/// Whether next to all FRFs have the opposite sign to the fixture's: then it is the force that is recorded the other way round.
+/// Whether next to all FRFs have the opposite sign to the fixture's: then it is the force that is recorded
+/// the other way round.
 pub(crate) fn all_turned(frfs: &[FrfCheck]) -> bool {
     let turned = frfs.iter().filter(|frf| frf.sign.is_some_and(|sign| sign < TURNED_COSINE)).count();
     frfs.len() > 1 && turned as f64 > FORCE_SHARE * frfs.len() as f64
@@ -74,8 +76,8 @@ pub(crate) fn of(frfs: &[FrfCheck], remarks: &mut Vec<Remark>) -> Vec<ChannelChe
 /// What a turned channel has to say of it.
 const SAYS_TURNED: &str = "its FRFs have the opposite sign to the fixture's, those of the other channels have not: it points the other way; turn its direction with --map, or correct the file (for modes and mass line here it is turned)";
 
-/// An FRF that is turned has one turned channel: where all FRFs of a channel are those of turned channels of the other kind, the one with more of them
-/// explains it, the response where both have as many.
+/// An FRF that is turned has one turned channel: where all FRFs of a channel are those of turned channels of
+/// the other kind, the one with more of them explains it, the response where both have as many.
 fn explained_once(channels: &mut [ChannelCheck], frfs: &[FrfCheck]) {
     let before: Vec<(String, usize)> = channels
         .iter()

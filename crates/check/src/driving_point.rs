@@ -1,7 +1,8 @@
 //! Driving points: FRFs whose sensor sits where the hammer strikes.
 //!
-//! A passive structure takes in power through a driving point at every frequency, so the real part of its mobility is never negative. With the accelerance A
-//! that is Re(A/s) ≥ 0, s = iω (or δ + iω under an exponential window): its imaginary part has one sign throughout, at resonances and between them.
+//! A passive structure takes in power through a driving point at every frequency, so the real part of its
+//! mobility is never negative. With the accelerance A that is Re(A/s) ≥ 0, s = iω (or δ + iω under an
+//! exponential window): its imaginary part has one sign throughout, at resonances and between them.
 
 use crate::settings::driving_points::{FEWEST_LINES, MIXED_SHARE, STANDS_OUT, TURNED_SHARE};
 use jointscope_spectra::{FrfPair, FrfSet};

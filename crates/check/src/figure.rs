@@ -10,15 +10,18 @@ use std::collections::BTreeSet;
 pub struct Figure {
     /// Its value, SI.
     pub value: f64,
-    /// One standard deviation from those of the fixture's numbers; `None` where it rests on a number of unknown deviation.
+    /// One standard deviation from those of the fixture's numbers; `None` where it rests on a number of
+    /// unknown deviation.
     pub std: Option<f64>,
     /// Its unit.
     pub unit: &'static str,
 }
 
-/// Standard deviations of what `of` makes of a fixture, as a Taylor series of first order has them: each uncertain number is moved by its deviation, the
-/// changes are added as squares. `None` where the figure rests on a number of unknown deviation, or where the moved fixture has no such figure. Points that
-/// hold nothing and are none of `channels` are passed over: no figure rests on where they are, and there may be thousands of them.
+/// Standard deviations of what `of` makes of a fixture, as a Taylor series of first order has them: each
+/// uncertain number is moved by its deviation, the changes are added as squares. `None` where the figure
+/// rests on a number of unknown deviation, or where the moved fixture has no such figure. Points that hold
+/// nothing and are none of `channels` are passed over: no figure rests on where they are, and there may be
+/// thousands of them.
 pub(crate) fn deviations(
     fixture: &Fixture,
     nominal: &[f64],

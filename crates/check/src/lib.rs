@@ -1,14 +1,19 @@
 //! What a fixture and its recordings are like, before any diagnosis.
 //!
-//! A fixture of one's own is full of slips: grams, millimetres, a sensor turned round, a point on the wrong body. All of them look like physics to a
-//! diagnosis. Here they are looked for one by one, in an instant, and said with the number that gave them away.
+//! A fixture of one's own is full of slips: grams, millimetres, a sensor turned round, a point on the wrong
+//! body. All of them look like physics to a diagnosis. Here they are looked for one by one, in an instant,
+//! and said with the number that gave them away.
 //!
 //! * [`Totals`]: mass, centre of gravity and inertia of the whole, to be held against scales and a drawing;
-//! * [`ModelModes`]: natural frequencies and damping ratios, rigid-body modes counted, with the deviations that the fixture's tolerances leave them;
-//! * [`Number`]: every number of the file with unit and deviation, and what it means: a second moment as a section, a modulus as a material;
-//! * [`RecordingCheck`]: every FRF and channel of a recording: noise, coherence, distance from the fixture's FRFs, [`DrivingPoint`]s, [`Reciprocity`],
-//!   the [`MassLine`], modes side by side, and what `screening` finds and a diagnosis would put right;
-//! * [`Remark`]: what is odd, one plain sentence each. Everything is decided here: files, pages and the terminal show it.
+//! * [`ModelModes`]: natural frequencies and damping ratios, rigid-body modes counted, with the deviations
+//!   that the fixture's tolerances leave them;
+//! * [`Number`]: every number of the file with unit and deviation, and what it means: a second moment as a
+//!   section, a modulus as a material;
+//! * [`RecordingCheck`]: every FRF and channel of a recording: noise, coherence, distance from the fixture's
+//!   FRFs, [`DrivingPoint`]s, [`Reciprocity`], the [`MassLine`], modes side by side, and what `screening`
+//!   finds and a diagnosis would put right;
+//! * [`Remark`]: what is odd, one plain sentence each. Everything is decided here: files, pages and the
+//!   terminal show it.
 //!
 //! ```
 //! use jointscope_check::{Check, CheckOptions};
@@ -99,7 +104,8 @@ impl Check {
     /// Looks at a fixture, and at what a test of it recorded.
     ///
     /// # Errors
-    /// A recording of which there are no FRFs: hits that excite nothing, FRFs without any signal. What is odd is no error.
+    /// A recording of which there are no FRFs: hits that excite nothing, FRFs without any signal. What is odd
+    /// is no error.
     pub fn of(
         fixture: &Fixture,
         measurement: Option<&Measurement>,
@@ -117,7 +123,8 @@ impl Check {
             .collect();
         remarks.extend(parts::apart(fixture));
         let numbers = numbers::of(fixture, &mut remarks);
-        // What is wrong in itself need not be called odd besides, number by number; of a channel or an FRF both may be true.
+        // What is wrong in itself need not be called odd besides, number by number; of a channel or an FRF
+        // both may be true.
         let wrong: Vec<String> = remarks
             .iter()
             .filter(|remark| remark.weight == Weight::Wrong)

@@ -1,8 +1,11 @@
-//! The mass line: below its first bending mode a free structure moves as one rigid body, and its accelerances tell its mass.
+//! The mass line: below its first bending mode a free structure moves as one rigid body, and its accelerances
+//! tell its mass.
 //!
-//! There A_ij = 1/M + (x_i − x_G)(x_j − x_G)/J, and what the bending modes add grows as ω². Real parts are fitted by a₀ + a₁ω²/(1 − ω²/ω₁²) + a₂ω², the first
-//! bending mode and all others (on supports with a₋₁/ω² besides); the same fit is made to the fixture's own FRFs on the same lines. The a₀ of three or more
-//! FRFs at different places give mass, centre of gravity and inertia as the recording weighs them, linear in 1/M + x_G²/J, x_G/J and 1/J.
+//! There A_ij = 1/M + (x_i − x_G)(x_j − x_G)/J, and what the bending modes add grows as ω². Real parts are
+//! fitted by a₀ + a₁ω²/(1 − ω²/ω₁²) + a₂ω², the first bending mode and all others (on supports with a₋₁/ω²
+//! besides); the same fit is made to the fixture's own FRFs on the same lines. The a₀ of three or more FRFs
+//! at different places give mass, centre of gravity and inertia as the recording weighs them, linear in
+//! 1/M + x_G²/J, x_G/J and 1/J.
 
 use crate::figure::deviations;
 use crate::settings::mass_line::{
@@ -117,7 +120,8 @@ impl RigidBand {
     }
 }
 
-/// The transverse FRFs as a rigid body's, recorded and modelled, and whether the two are odd beside each other.
+/// The transverse FRFs as a rigid body's, recorded and modelled, and whether the two are odd beside each
+/// other.
 fn intercepts(frfs: &FrfSet, modelled: &[Complex64], rigid: &RigidBand) -> Vec<MassLineFrf> {
     let hz = frfs.lines().hz();
     let transverse =
@@ -171,7 +175,8 @@ fn masses(fixture: &Fixture, lines: &[MassLineFrf], totals: &Totals) -> (Option<
     (mass.filter(|_| fixture_mass.is_some()), fixture_mass)
 }
 
-/// a₀ of the real parts on the lines `used`, with its standard deviation, that of the noise or of what the fit leaves, whichever is larger.
+/// a₀ of the real parts on the lines `used`, with its standard deviation, that of the noise or of what the
+/// fit leaves, whichever is larger.
 fn intercept(
     hz: &[f64],
     values: &[Complex64],

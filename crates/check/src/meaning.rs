@@ -11,7 +11,8 @@ struct Material {
     density: f64,
 }
 
-/// Materials of test benches by ascending modulus, their usual ranges as handbooks state them; the first that holds a modulus names it.
+/// Materials of test benches by ascending modulus, their usual ranges as handbooks state them; the first that
+/// holds a modulus names it.
 const MATERIALS: [Material; 8] = [
     Material { name: "rubber or foam", modulus: (0.0005, 0.1), density: 1100.0 },
     Material { name: "a soft plastic", modulus: (0.1, 2.2), density: 1000.0 },

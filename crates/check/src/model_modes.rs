@@ -72,7 +72,8 @@ impl ModelModes {
         self.modes.iter().find(|mode| !mode.on_supports).map(|mode| mode.frequency.value)
     }
 
-    /// The highest natural frequency at which the assembly moves as rigid on its supports, Hz; zero where it is free.
+    /// The highest natural frequency at which the assembly moves as rigid on its supports, Hz; zero where it
+    /// is free.
     pub(crate) fn highest_on_supports(&self) -> f64 {
         self.modes.iter().filter(|mode| mode.on_supports).map(|mode| mode.frequency.value).fold(0.0, f64::max)
     }
@@ -103,8 +104,9 @@ impl Poles {
     }
 }
 
-/// The poles of an assembly on supports that has neither effects nor dashpots: from its matrices, for a clamp that is put on a few free modes
-/// is softer than it is, and its frequencies far too high. Damping is small: each mode has its own share of it.
+/// The poles of an assembly on supports that has neither effects nor dashpots: from its matrices, for a clamp
+/// that is put on a few free modes is softer than it is, and its frequencies far too high. Damping is small:
+/// each mode has its own share of it.
 fn held(fixture: &Fixture, stands: &Fixture, highest: f64) -> Result<Poles, LumpedError> {
     let (stands, free) = (Assembly::new(stands, highest)?, Assembly::new(fixture, highest)?);
     let n = stands.order();
@@ -147,7 +149,8 @@ fn held(fixture: &Fixture, stands: &Fixture, highest: f64) -> Result<Poles, Lump
 fn in_time(fixture: &Fixture, highest: f64) -> Result<Poles, LumpedError> {
     let space = StateSpace::new(fixture, highest)?;
     let (size, coordinates) = (space.states(), space.coordinates());
-    // Displacements times the highest frequency: all elements are then of its order, and eigenvalues as exact as they can be.
+    // Displacements times the highest frequency: all elements are then of its order, and eigenvalues as exact
+    // as they can be.
     let omega = TAU * highest;
     let scale = |i: usize| if i < coordinates { omega } else { 1.0 };
     let matrix: Vec<Complex64> = space
@@ -177,7 +180,8 @@ fn as_it_stands(fixture: &Fixture) -> Option<Fixture> {
     fixture.clone().with_damping(ratios).ok()
 }
 
-/// `stands` with the numbers of `moved`: what is moved a little beyond the end of its beam would be refused if it were stated so.
+/// `stands` with the numbers of `moved`: what is moved a little beyond the end of its beam would be refused
+/// if it were stated so.
 fn moved_alike(stands: &Fixture, moved: &Fixture) -> Fixture {
     let values: BTreeMap<String, f64> =
         moved.uncertain_quantities(false).into_iter().map(|(_, q)| (q.path.to_string(), q.value)).collect();
@@ -278,14 +282,16 @@ mod tests {
                 for (r, mode) in modes.modes.iter().enumerate().take(4) {
                     let hz = f64::powi(roots[r] / length, 2) * (stiffness / mass).sqrt() / TAU;
                     let error = mode.frequency.value / hz - 1.0;
-                    // A clamp of a hundred thousand times the beam gives way to the shear force, which grows as the cube.
+                    // A clamp of a hundred thousand times the beam gives way to the shear force, which grows
+                    // as the cube.
                     let allowed = 1e-4 + roots[r].powi(3) / 2e5;
                     assert!(
                         error.abs() < allowed,
                         "{length} m, {damping}, mode {}: off by {error:.1e}",
                         r + 1
                     );
-                    // d ln f = ½ d ln E, of which the deviation is that of 2/207; lengths are known to their digits.
+                    // d ln f = ½ d ln E, of which the deviation is that of 2/207; lengths are known to their
+                    // digits.
                     let std = mode.frequency.std.unwrap() / hz;
                     assert!((0.5 * 2.0 / 207.0..0.02).contains(&std), "{mode:?}");
                     assert!(
@@ -299,7 +305,8 @@ mod tests {
 
     #[test]
     fn a_mode_that_goes_where_a_number_is_moved_leaves_no_deviation_rather_than_a_wrong_one() {
-        // A dashpot of which the deviation makes the mode on the support creep: the mode of the joint is then first in the row.
+        // A dashpot of which the deviation makes the mode on the support creep: the mode of the joint is then
+        // first in the row.
         let modes = |std: f64| {
             let text = format!(
                 r#"{{ "bodies": {{ "A": {{ "mass": {{"value": 2, "std": 0}}, "rotates": false }}, "B": {{ "mass": {{"value": 3, "std": 0}}, "rotates": false }} }},

@@ -3,8 +3,8 @@
 use crate::Remark;
 use jointscope_fixture::{Fixture, Place};
 
-/// What is to be said of a fixture that is more than one structure: bodies that neither joints nor effects join move independently of each other, and no FRF leads from one
-/// to the other.
+/// What is to be said of a fixture that is more than one structure: bodies that neither joints nor effects
+/// join move independently of each other, and no FRF leads from one to the other.
 pub(crate) fn apart(fixture: &Fixture) -> Option<Remark> {
     let parts = parts(fixture);
     if parts.len() < 2 {

@@ -43,7 +43,8 @@ pub(crate) fn of(fixture: &Fixture, frfs: &FrfSet, model: &ModelModes) -> Result
     }
     let last = frfs.lines().hz()[frfs.lines().len() - 1];
     let expected = model.modes.iter().filter(|mode| mode.frequency.value <= last).count();
-    // No more than the model may have, and some: with all orders that a chart can have, ripples of the noise are looked at one by one.
+    // No more than the model may have, and some: with all orders that a chart can have, ripples of the noise
+    // are looked at one by one.
     let orders = Some((2, 2 * expected + FURTHER_ORDERS));
     let quick = ModalAnalysis::of(frfs, &ModesOptions { orders, ..ModesOptions::default() });
     let analysis = match quick {

@@ -217,8 +217,9 @@ fn of_odd_record(odd: &OddRecord) -> Remark {
     Remark::odd(frf.to_string(), says)
 }
 
-/// The fixture's FRFs beside measured accelerances, on their channels and lines, as a check draws them: without effects that have none, and with some
-/// damping where it has none at all. `None` where the fixture has no FRFs.
+/// The fixture's FRFs beside measured accelerances, on their channels and lines, as a check draws them:
+/// without effects that have none, and with some damping where it has none at all. `None` where the fixture
+/// has no FRFs.
 pub fn fixture_frfs(fixture: &Fixture, measured: &FrfSet) -> Option<FrfSet> {
     let drawn = drawn(fixture.clone());
     set_like(measured, accelerances(&drawn, measured.pairs(), measured.lines(), Instrument::AsRecorded).ok()?)
@@ -238,7 +239,8 @@ fn with_force_as_meant(
     // A receptance that is called an accelerance has the opposite sign as well.
     let of_another_form = screened.oddities.iter().any(|oddity| matches!(oddity, Oddity::Form(_)));
     if !of_another_form && is_turned(&measured.frfs, fixture) {
-        // FRFs of the wrong sign are like none of the fixture's, and labels would be looked for that suit them better.
+        // FRFs of the wrong sign are like none of the fixture's, and labels would be looked for that suit
+        // them better.
         measured.frfs = measured.frfs.with_values(|_, value| -value);
         screened = self::screened(measured.frfs.clone(), fixture)?;
         remarks.push(Remark::wrong(
@@ -295,7 +297,8 @@ fn at_one_level(measurement: &Measurement, options: &CheckOptions) -> Result<Mea
     Ok(measured)
 }
 
-/// The fixture as its FRFs are drawn: without effects that have none, and with some damping where it has none at all, for resonances without any have no height to compare.
+/// The fixture as its FRFs are drawn: without effects that have none, and with some damping where it has none
+/// at all, for resonances without any have no height to compare.
 fn drawn(fixture: Fixture) -> Fixture {
     let linear: Vec<Effect> =
         fixture.physics().iter().filter(|effect| !effect.kind.is_nonlinear()).cloned().collect();

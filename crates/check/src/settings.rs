@@ -1,8 +1,10 @@
-//! Every tuned number of a check, with the reason for it where there is one to state, by what it is that is checked.
+//! Every tuned number of a check, with the reason for it where there is one to state, by what it is that is
+//! checked.
 
 /// How much a check may do.
 pub(crate) mod work {
-    /// Values of FRFs above which modes, and lines that contradict others, take longer to find than one waits for a check.
+    /// Values of FRFs above which modes, and lines that contradict others, take longer to find than one waits
+    /// for a check.
     pub(crate) const MOST_VALUES: usize = 30_000;
 }
 
@@ -20,7 +22,8 @@ pub(crate) mod model_modes {
     pub(crate) const MOST_LISTED: usize = 20;
     /// Factor on the last line of a recording up to which modes matter as well.
     pub(crate) const BEYOND_BAND: f64 = 1.2;
-    /// Share of the highest frequency below which a pole is at zero: rounding of a double one is the root of the machine's.
+    /// Share of the highest frequency below which a pole is at zero: rounding of a double one is the root of
+    /// the machine's.
     pub(crate) const ZERO_POLE: f64 = 1e-6;
     /// Relative distance of natural frequencies with and without effects up to which a mode is the same one.
     pub(crate) const SAME_FREQUENCY: f64 = 0.1;
@@ -28,7 +31,8 @@ pub(crate) mod model_modes {
 
 /// Deviations of totals and modes.
 pub(crate) mod figures {
-    /// Step by which a number of unknown deviation is moved to see whether a figure rests on it, relative; and of one that is zero.
+    /// Step by which a number of unknown deviation is moved to see whether a figure rests on it, relative;
+    /// and of one that is zero.
     pub(crate) const RELATIVE_STEP: f64 = 1e-3;
     /// Relative change of a figure from which it rests on a number.
     pub(crate) const LEAST_CHANGE: f64 = 1e-9;
@@ -56,9 +60,11 @@ pub(crate) mod frfs {
     pub(crate) const POOR_COHERENCE: f64 = 0.8;
     /// Share of poor lines from which an FRF's coherence is worth a word.
     pub(crate) const MANY_POOR_LINES: f64 = 0.3;
-    /// Times the median of the values about it from which a value is none of a structure's: the highest peak of a damping ratio of 1e-5 is less.
+    /// Times the median of the values about it from which a value is none of a structure's: the highest peak
+    /// of a damping ratio of 1e-5 is less.
     pub(crate) const ABSURD_RATIO: f64 = 1e6;
-    /// Lines on either side that are about one: over a whole band the FRFs of a row of masses may well fall by more than that.
+    /// Lines on either side that are about one: over a whole band the FRFs of a row of masses may well fall
+    /// by more than that.
     pub(crate) const NEIGHBOURS: usize = 20;
 }
 

@@ -29,7 +29,8 @@ pub(crate) struct Destination {
     /// Print the answer as the JSON file holds it, for scripts.
     #[arg(long)]
     pub json: bool,
-    /// Also write tables and curves of the page (csv), its figures (svg), or FRFs of the models and what is left of the measured ones (uff).
+    /// Also write tables and curves of the page (csv), its figures (svg), or FRFs of the models and what is
+    /// left of the measured ones (uff).
     #[arg(long, value_name = "KIND", value_enum, value_delimiter = ',', requires = "output")]
     pub also: Vec<Also>,
     /// The directory to write to; may be left out with --json.
@@ -84,7 +85,8 @@ pub(crate) const PAGE: &str = "report.html";
 pub(crate) const REFUSED: &str = "refused.json";
 
 impl Answered {
-    /// Writes what the destination asks for, tells the notices, and answers with what came out and where the page is.
+    /// Writes what the destination asks for, tells the notices, and answers with what came out and where the
+    /// page is.
     pub(crate) fn end<'a>(
         self,
         destination: &Destination,

@@ -44,29 +44,36 @@ enum Command {
     Init(init::InitArguments),
     /// The JSON Schema of fixture files, with which editors complete and check them.
     Schema(schema::SchemaArguments),
-    /// What a fixture weighs, its modes, what every number of it means, and what is odd in each channel of its recordings: check.json and report.html.
+    /// What a fixture weighs, its modes, what every number of it means, and what is odd in each channel of
+    /// its recordings: check.json and report.html.
     Check(check::CheckArguments),
     /// FRFs of an assembly, computed from its fixture file, its effects included.
     Synthesize(synthesize::SynthesizeArguments),
     /// FRFs with coherence from hammer hits: time histories of force and responses.
     Estimate(estimate::EstimateArguments),
-    /// Stiffness and damping of a joint by frequency, from the FRFs of the assembly: stiffness.json and report.html.
+    /// Stiffness and damping of a joint by frequency, from the FRFs of the assembly: stiffness.json and
+    /// report.html.
     Decompose(decompose::DecomposeArguments),
-    /// What physics the fixture leaves out, where it sits and how sure that is: diagnosis.json, refitted.json, repaired.json, report.html.
+    /// What physics the fixture leaves out, where it sits and how sure that is: diagnosis.json,
+    /// refitted.json, repaired.json, report.html.
     Diagnose(diagnose::DiagnoseArguments),
     /// Several decompositions side by side, and which joint is the stiffer: comparison.json and report.html.
     Compare(compare::CompareArguments),
-    /// The joint of a decomposition, or what a diagnosis found, as elements for Nastran, ANSYS, Abaqus or CalculiX, or as plain matrices.
+    /// The joint of a decomposition, or what a diagnosis found, as elements for Nastran, ANSYS, Abaqus or
+    /// CalculiX, or as plain matrices.
     Export(export::ExportArguments),
     /// FRFs of the fixture's finite-element twin, the assembly as a deformable solid.
     Fem(fem::FemArguments),
-    /// Natural frequencies, damping ratios and mode shapes from FRFs, with their standard deviations: modes.json and report.html.
+    /// Natural frequencies, damping ratios and mode shapes from FRFs, with their standard deviations:
+    /// modes.json and report.html.
     Modes(modes::ModesArguments),
     /// What recordings hold: functions and their units, geometry, modes.
     Show(show::ShowArguments),
-    /// Accelerations of an assembly over time under recorded forces, effects that depend on amplitude included.
+    /// Accelerations of an assembly over time under recorded forces, effects that depend on amplitude
+    /// included.
     Simulate(simulate::SimulateArguments),
-    /// What to measure next: candidate measurements ranked by how well they tell look-alike names apart, or by what they tell of a joint: plan.json and plan.html.
+    /// What to measure next: candidate measurements ranked by how well they tell look-alike names apart, or
+    /// by what they tell of a joint: plan.json and plan.html.
     Plan(plan::PlanArguments),
     /// How often the diagnosis is right: concealed cases of a simulated laboratory, and a table of scores.
     Prove(prove::ProveArguments),

@@ -10,19 +10,23 @@ use crate::values::{one_of, positive};
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Hammer hits (time histories)")]
 pub(crate) struct EstimationArguments {
-    /// How FRFs follow from the spectra: H1 (noise on the responses), H2 (noise on the force), Hv (between them).
+    /// How FRFs follow from the spectra: H1 (noise on the responses), H2 (noise on the force), Hv (between
+    /// them).
     #[arg(long, value_parser = one_of(&ESTIMATORS), default_value = "H1", ignore_case = true)]
     pub estimator: Estimator,
-    /// How hits count in an average: `auto` inversely to their noise where it differs, `plain` as the textbook says.
+    /// How hits count in an average: `auto` inversely to their noise where it differs, `plain` as the
+    /// textbook says.
     #[arg(long, value_parser = one_of(&WEIGHTS), default_value = "auto")]
     pub weights: Weighting,
     /// What is taken off every signal: its offset, a straight line, or nothing.
     #[arg(long, value_parser = one_of(&BASELINES), default_value = "offset")]
     pub detrend: Baseline,
-    /// Keep the force for so many seconds after its onset, then fade it out; `auto` for ten widths of the pulse [default: none].
+    /// Keep the force for so many seconds after its onset, then fade it out; `auto` for ten widths of the
+    /// pulse [default: none].
     #[arg(long, value_name = "SECONDS", value_parser = force_window)]
     pub force_window: Option<ForceWindow>,
-    /// Exponential window of this decay over force and responses; `auto` where a record ends too early, `none`.
+    /// Exponential window of this decay over force and responses; `auto` where a record ends too early,
+    /// `none`.
     #[arg(long, value_name = "1/S", value_parser = response_window)]
     pub response_window: Option<ResponseWindow>,
     /// Fill records with zeros to so many times their length.

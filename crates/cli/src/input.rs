@@ -1,7 +1,8 @@
 //! Files in: every fault a sentence that starts with the file's name.
 //!
-//! Whatever is read is noted with the SHA-256 of the bytes that were handed out, so that an answer states what it was made of, be it a pipe that is read
-//! out or a file that has changed since. One run knows one version of a file: where a second reading finds another, it is refused.
+//! Whatever is read is noted with the SHA-256 of the bytes that were handed out, so that an answer states
+//! what it was made of, be it a pipe that is read out or a file that has changed since. One run knows one
+//! version of a file: where a second reading finds another, it is refused.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -162,7 +163,8 @@ pub(crate) fn digest(bytes: &[u8]) -> String {
 /// What may be read of something that is no file of a known length, such as a pipe or a device, bytes.
 const ENDLESS: u64 = 1 << 30;
 
-/// Reads a file, and whether it is none but a pipe or device; what has no length of its own is refused where it does not end.
+/// Reads a file, and whether it is none but a pipe or device; what has no length of its own is refused where
+/// it does not end.
 fn whole(path: &Path) -> Result<(Vec<u8>, bool), Refusal> {
     let failed = |error: std::io::Error| Refusal::io(path, &error);
     let contents = if is_standard_input(path) {

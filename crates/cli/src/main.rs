@@ -1,7 +1,9 @@
-//! The `jointscope` program: arguments, files and exit codes. What is computed is computed by the crates below.
+//! The `jointscope` program: arguments, files and exit codes. What is computed is computed by the crates
+//! below.
 //!
-//! Exit status 0: done. 1: done, though not all of it: of many cases some have no answer, or the files are written and standard output took no more. 2: bad usage or bad input, with one plain sentence on standard error and nothing half-written. Answers go to standard output; notices
-//! and progress go to standard error.
+//! Exit status 0: done. 1: done, though not all of it: of many cases some have no answer, or the files are
+//! written and standard output took no more. 2: bad usage or bad input, with one plain sentence on standard
+//! error and nothing half-written. Answers go to standard output; notices and progress go to standard error.
 
 mod answered;
 mod commands;
@@ -49,7 +51,8 @@ fn refuse(refusal: &Refusal) -> ExitCode {
     ExitCode::from(REFUSED)
 }
 
-/// Prints to standard output. A reader that has gone away (`jointscope … | head`) is no error; an answer that is lost is one.
+/// Prints to standard output. A reader that has gone away (`jointscope … | head`) is no error; an answer that
+/// is lost is one.
 fn say(text: &str, whole: bool) -> ExitCode {
     let mut output = std::io::stdout().lock();
     match output.write_all(visible(text).as_bytes()).and_then(|()| output.flush()) {

@@ -12,7 +12,8 @@ use crate::progress;
 use crate::refusal::Refusal;
 use crate::replacing::{Lock, parent, part, rename_all};
 
-/// The files of a command, written together. Whatever goes wrong, files that were there before are left or put back as they were.
+/// The files of a command, written together. Whatever goes wrong, files that were there before are left or
+/// put back as they were.
 #[derive(Debug, Default)]
 pub(crate) struct Outputs {
     files: Vec<(PathBuf, Vec<u8>)>,

@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 use jointscope::report::format::hides;
 
-/// Steps of something long: the last one on a terminal, lines elsewhere, of what is done within a stage no more than one every other second.
+/// Steps of something long: the last one on a terminal, lines elsewhere, of what is done within a stage no
+/// more than one every other second.
 #[derive(Debug)]
 pub(crate) struct Steps {
     /// On a terminal alone.
@@ -25,7 +26,8 @@ struct LastShown {
     last: Instant,
 }
 
-/// Time between lines of what is done within a stage: a log stays short, and whoever watches sees that it goes on.
+/// Time between lines of what is done within a stage: a log stays short, and whoever watches sees that it
+/// goes on.
 const PAUSE: Duration = Duration::from_secs(2);
 
 impl Steps {
@@ -83,7 +85,8 @@ impl Steps {
 /// Time between changes of what a terminal shows.
 const SHOWN: Duration = Duration::from_millis(100);
 
-/// A count of steps: a bar on a terminal, lines elsewhere, no more than one every so often and none for what is done at once.
+/// A count of steps: a bar on a terminal, lines elsewhere, no more than one every so often and none for what
+/// is done at once.
 pub(crate) struct Bar {
     /// On a terminal alone.
     bar: Option<ProgressBar>,
@@ -178,7 +181,8 @@ pub(crate) fn tell(line: &str) {
     let _ = writeln!(std::io::stderr(), "{}", visible(line));
 }
 
-/// A text that no name can make look like another: what hides is spelled as JSON does, so that JSON stays the same.
+/// A text that no name can make look like another: what hides is spelled as JSON does, so that JSON stays the
+/// same.
 pub(crate) fn visible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {

@@ -27,14 +27,15 @@ pub(crate) struct RecordingArguments {
 /// What the analyst says of recordings where the files do not.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct ReadingArguments {
-    /// Which channel of the files is which of the fixture: +z=+y for all nodes, 101:+z=1:+y for one, which beats it, "10*:+z=*:+y" for nodes by
-    /// their digits.
+    /// Which channel of the files is which of the fixture: +z=+y for all nodes, 101:+z=1:+y for one, which
+    /// beats it, "10*:+z=*:+y" for nodes by their digits.
     #[arg(long, value_name = "[NODE:]DIR=[POINT:]DIR", value_parser = map_entry, num_args = 1..)]
     pub map: Vec<String>,
     /// Units of response and force where a file states none, such as g,lbf.
     #[arg(long, value_name = "RESPONSE,FORCE", value_parser = AssumedUnits::parse)]
     pub assume_units: Option<AssumedUnits>,
-    /// Which column of a CSV file or variable of a MATLAB file is which FRF, in which unit, such as "H1=4/1 [m/s^2/N]".
+    /// Which column of a CSV file or variable of a MATLAB file is which FRF, in which unit, such as "H1=4/1
+    /// [m/s^2/N]".
     #[arg(long, value_name = "NAME=OUT/IN [UNIT]", value_parser = column_entry, num_args = 1..)]
     pub columns: Vec<String>,
     /// Number of averages of every FRF, where the files do not state it: with it, coherence tells the noise.
@@ -145,7 +146,8 @@ pub(crate) fn column_entry(text: &str) -> Result<String, ColumnMapError> {
     ColumnMap::parse([text]).map(|_| text.to_owned())
 }
 
-/// One map entry, checked by itself; entries are checked against each other in [`RecordingArguments::options`].
+/// One map entry, checked by itself; entries are checked against each other in
+/// [`RecordingArguments::options`].
 pub(crate) fn map_entry(text: &str) -> Result<String, ChannelMapError> {
     ChannelMap::parse([text]).map(|_| text.to_owned())
 }

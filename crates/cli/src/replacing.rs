@@ -1,9 +1,11 @@
 //! Files put in the place of others.
 //!
-//! Every file is written whole beside its place and then renamed over what is there, so that a name always leads to one whole file, the old or the new.
-//! While a run changes a folder it holds a lock on a hidden file there ([`LOCK`]); another run waits. Before the first of several renames that file gets the
-//! names of all of them, and it is removed behind the last: where a run is killed in between, the names stay, and whoever reads one of these
-//! files is told that they may be of two runs ([`is_unfinished`]) until a run has written them all anew.
+//! Every file is written whole beside its place and then renamed over what is there, so that a name always
+//! leads to one whole file, the old or the new. While a run changes a folder it holds a lock on a hidden file
+//! there ([`LOCK`]); another run waits. Before the first of several renames that file gets the names of all
+//! of them, and it is removed behind the last: where a run is killed in between, the names stay, and whoever
+//! reads one of these files is told that they may be of two runs ([`is_unfinished`]) until a run has written
+//! them all anew.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File, TryLockError};
@@ -106,7 +108,8 @@ fn rename(path: &Path, part: NamedTempFile<File>) -> io::Result<Before> {
 /// The hidden file of a folder that is being changed.
 const LOCK: &str = ".jointscope-lock";
 
-/// Whether a file is one of several that a run was ended in the middle of renaming; one that is renaming just now is waited for.
+/// Whether a file is one of several that a run was ended in the middle of renaming; one that is renaming just
+/// now is waited for.
 pub(crate) fn is_unfinished(path: &Path) -> bool {
     let is_named = |mut lock: &File| {
         let mut names = String::new();

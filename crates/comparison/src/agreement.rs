@@ -1,10 +1,12 @@
 //! Whether two tests agree on the bodies that they are said to share.
 //!
-//! Each test by itself, with the prior, has the shared quantities q at m = E(q) with the covariance S, in standard deviations of the prior. If q is the same in both, m₁ − m₂ is
-//! normal with mean zero and the covariance A₁ + A₂ − A₁A₂ − A₂A₁, A = 1 − S being what a test has told of q.
+//! Each test by itself, with the prior, has the shared quantities q at m = E(q) with the covariance S, in
+//! standard deviations of the prior. If q is the same in both, m₁ − m₂ is normal with mean zero and the
+//! covariance A₁ + A₂ − A₁A₂ − A₂A₁, A = 1 − S being what a test has told of q.
 //!
-//! Only combinations of q count of which the tests tell something. Along the others a fit lies in a flat, curved valley: where in it the fit ends is known to a few tenths of the prior's
-//! deviation, since χ² hardly changes there, and not to the hundredth that A leaves it.
+//! Only combinations of q count of which the tests tell something. Along the others a fit lies in a flat,
+//! curved valley: where in it the fit ends is known to a few tenths of the prior's deviation, since χ² hardly
+//! changes there, and not to the hundredth that A leaves it.
 
 use crate::choices::Choice;
 use crate::normal::chi2_above;
@@ -13,14 +15,18 @@ use jointscope_linalg::{Cholesky, generalized_symmetric_eigen};
 
 /// Probability below which two tests do not agree; of several pairs, divided by their number.
 const DISAGREE: f64 = 0.01;
-/// Share of the prior's variance that the tests take away on average, below which they tell nothing of a combination.
+/// Share of the prior's variance that the tests take away on average, below which they tell nothing of a
+/// combination.
 const TOLD: f64 = 0.01;
-/// Variance of a difference, in those of the prior, below which it is as far from zero as two fits are from linear.
+/// Variance of a difference, in those of the prior, below which it is as far from zero as two fits are from
+/// linear.
 const LINEAR: f64 = 1e-4;
 
 impl Together {
-    /// The test that contradicts most others on the bodies they share, of as many the one of the least probable agreement; nothing where all agree. The more pairs are
-    /// looked at, the less probable each has to be. Each test stands by its first joint. Agreement is the mean of that under each choice of laws, as often as it is probable.
+    /// The test that contradicts most others on the bodies they share, of as many the one of the least
+    /// probable agreement; nothing where all agree. The more pairs are looked at, the less probable each has
+    /// to be. Each test stands by its first joint. Agreement is the mean of that under each choice of laws,
+    /// as often as it is probable.
     pub(crate) fn most_at_odds(&self, choices: &[Choice], firsts: &[usize]) -> Option<usize> {
         let all = firsts.iter().enumerate().flat_map(|(i, &a)| firsts[i + 1..].iter().map(move |&b| [a, b]));
         let agreement = |[a, b]: [usize; 2]| {
@@ -45,7 +51,8 @@ impl Together {
         all.max_by(|a, b| a.1.cmp(&b.1).then(b.2.total_cmp(&a.2))).map(|(joint, ..)| joint)
     }
 
-    /// Probability of shared quantities as far apart or farther, if they are the same; `None` where nothing is shared or told.
+    /// Probability of shared quantities as far apart or farther, if they are the same; `None` where nothing
+    /// is shared or told.
     pub fn agreement(&self, a: &Decomposed, b: &Decomposed) -> Option<f64> {
         let both = |names: &[String]| [a, b].iter().all(|joint| names.contains(&joint.name));
         let shared = self.shared.iter().filter(|body| both(&body.joints));
@@ -93,7 +100,8 @@ fn unit(n: usize) -> Vec<f64> {
     (0..n * n).map(|e| f64::from(u8::from(e / n == e % n))).collect()
 }
 
-/// The combinations of the quantities, of length one, of which two tests tell something: `x` and `y` are what each tells, 1 − S.
+/// The combinations of the quantities, of length one, of which two tests tell something: `x` and `y` are what
+/// each tells, 1 − S.
 fn determined_directions(n: usize, x: &[f64], y: &[f64]) -> Option<Vec<Vec<f64>>> {
     let mean: Vec<f64> = x.iter().zip(y).map(|(x, y)| 0.5 * (x + y)).collect();
     let basis = generalized_symmetric_eigen(n, &unit(n), &mean).ok()?;

@@ -1,10 +1,14 @@
 //! Joints at one law over frequency.
 //!
-//! K and C of different laws are different numbers of one joint, each with the deviation that it has if its law holds. So joints are compared at one law: of those under
-//! which every file says what its FRFs tell, the one with the largest product of probabilities, which is the most probable one if all joints follow one law.
+//! K and C of different laws are different numbers of one joint, each with the deviation that it has if its
+//! law holds. So joints are compared at one law: of those under which every file says what its FRFs tell, the
+//! one with the largest product of probabilities, which is the most probable one if all joints follow one
+//! law.
 //!
-//! Whether joints are the same is tested by what FRFs alone tell under this law, with C free: of a C that is held where it gives out no energy the estimate is no longer normal about
-//! the true one, of a free C it is. What other laws would change belongs to no such test: under the law that holds it is no error of either joint.
+//! Whether joints are the same is tested by what FRFs alone tell under this law, with C free: of a C that is
+//! held where it gives out no energy the estimate is no longer normal about the true one, of a free C it is.
+//! What other laws would change belongs to no such test: under the law that holds it is no error of either
+//! joint.
 
 use crate::laws_in_common::LawsInCommon;
 use crate::stiffness_file::Matrix;
@@ -14,7 +18,8 @@ use serde::Serialize;
 
 /// Share of a frequency below which two are the same number.
 pub(crate) const SAME_FREQUENCY: f64 = 1e-6;
-/// Odds by which a law must be more probable than those whose numbers can be stated at one frequency to be taken instead of these.
+/// Odds by which a law must be more probable than those whose numbers can be stated at one frequency to be
+/// taken instead of these.
 const MORE_PROBABLE: f64 = 20.0;
 
 /// The law over frequency at which joints are compared.
@@ -30,8 +35,9 @@ pub struct LawOfAll {
 }
 
 impl LawOfAll {
-    /// The most probable law of all these joints together; nothing where they follow laws of their own, where there is none under which every file says what its FRFs tell, or where its numbers are
-    /// stated at frequencies on which they depend.
+    /// The most probable law of all these joints together; nothing where they follow laws of their own, where
+    /// there is none under which every file says what its FRFs tell, or where its numbers are stated at
+    /// frequencies on which they depend.
     pub(crate) fn of(joints: &[Decomposed]) -> Option<Self> {
         let fits: Vec<&FiledJoint> =
             joints.iter().map(|joint| joint.fitted.as_ref()).collect::<Option<_>>()?;
@@ -98,7 +104,8 @@ fn is_at_one_frequency(joints: &[Decomposed], law: &str) -> bool {
     law.starts_with("viscous") || law.starts_with("constant") || is_restatable || are_stated_alike(joints)
 }
 
-/// What C of a structural joint, ηK/ω, is multiplied by to be that at the frequency of the first of all; 1 of other laws.
+/// What C of a structural joint, ηK/ω, is multiplied by to be that at the frequency of the first of all; 1 of
+/// other laws.
 fn restated_by(joints: &[Decomposed], joint: &Decomposed, law: &str) -> f64 {
     if !law.starts_with("structural") || joint.at_once.is_some() || are_stated_alike(joints) {
         return 1.0;
@@ -122,7 +129,8 @@ pub(crate) fn certain(joints: &[Decomposed]) -> Vec<Decomposed> {
     joints.iter().map(of).collect()
 }
 
-/// The joints as their FRFs alone tell of them under the laws that their numbers are of, C free. What one fit found at once stays as it is.
+/// The joints as their FRFs alone tell of them under the laws that their numbers are of, C free. What one fit
+/// found at once stays as it is.
 pub(crate) fn with_free_damping(joints: &[Decomposed]) -> Vec<Decomposed> {
     let free = |joint: &Decomposed| {
         let own = joint.fitted.as_ref().filter(|_| joint.at_once.is_none());
@@ -145,7 +153,8 @@ impl FiledJoint {
         probability.or_else(|| (is_stated && self.laws.is_empty()).then_some(1.0))
     }
 
-    /// The six numbers as FRFs and the fixture's tolerances tell, those that are not told being zero without a deviation.
+    /// The six numbers as FRFs and the fixture's tolerances tell, those that are not told being zero without
+    /// a deviation.
     fn posterior(&self, filed: &FiledLikelihood) -> Option<Six> {
         let (slots, likelihood) = filed.of_six(self.quantities.len())?;
         let precision = |m: usize| f64::from(u8::from(self.quantities[m - slots.len()].std.is_some()));

@@ -54,7 +54,8 @@ impl AtOnce {
         })
     }
 
-    /// Covariance of two numbers, each given by its joint and its place among the six; zero of numbers that were not found.
+    /// Covariance of two numbers, each given by its joint and its place among the six; zero of numbers that
+    /// were not found.
     pub(crate) fn covariance(&self, a: (usize, usize), b: (usize, usize)) -> f64 {
         self.entry(&self.covariance, a, b)
     }
@@ -69,8 +70,9 @@ impl AtOnce {
         row(a).zip(row(b)).map_or(0.0, |(a, b)| of[a][b])
     }
 
-    /// The likelihood of the numbers of these joints and after them of `quantities` quantities, the other joints integrated out; with each number's joint and place among
-    /// the six. Nothing where the file has none that fits.
+    /// The likelihood of the numbers of these joints and after them of `quantities` quantities, the other
+    /// joints integrated out; with each number's joint and place among the six. Nothing where the file has
+    /// none that fits.
     pub(crate) fn likelihood(
         &self,
         joints: &[usize],

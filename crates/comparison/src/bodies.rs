@@ -1,6 +1,7 @@
 //! Which tests were made on the same bodies.
 //!
-//! A test is one fit: of one joint, or of several that it found at once. A body is the same in two tests where both fixtures say the same of it.
+//! A test is one fit: of one joint, or of several that it found at once. A body is the same in two tests
+//! where both fixtures say the same of it.
 
 use crate::{Decomposed, FiledJoint, StatedQuantity};
 use jointscope_inference::QuadraticLikelihood;
@@ -33,11 +34,14 @@ pub struct Apart {
 pub enum WhyApart {
     /// It was asked for.
     Asked,
-    /// Its file does not say how the fixture's quantities act on it: an earlier version's, or one without a fit to all FRFs.
+    /// Its file does not say how the fixture's quantities act on it: an earlier version's, or one without a
+    /// fit to all FRFs.
     NotStated,
-    /// Its FRFs contradict those of another test on the quantities that the fixtures state alike: the bodies are not the same, or the fit bends them for something else.
+    /// Its FRFs contradict those of another test on the quantities that the fixtures state alike: the bodies
+    /// are not the same, or the fit bends them for something else.
     Disagrees,
-    /// Its C, or that of a joint found with it, is held where it just gives out no energy, which what its FRFs alone tell knows nothing of.
+    /// Its C, or that of a joint found with it, is held where it just gives out no energy, which what its
+    /// FRFs alone tell knows nothing of.
     OnTheBoundary,
     /// The other tests on the bodies that its fixture states are themselves taken apart.
     LeftAlone,
@@ -54,7 +58,8 @@ pub(crate) struct Part<'a> {
     all: &'a [Decomposed],
     /// The fit of the first of them; the quantities are those of all.
     pub fit: &'a FiledJoint,
-    /// By quantity: the first joint of the body's first test with the same statement, or of this test for what is its own.
+    /// By quantity: the first joint of the body's first test with the same statement, or of this test for
+    /// what is its own.
     pub owners: Vec<usize>,
 }
 
@@ -70,8 +75,8 @@ pub(crate) fn tests(joints: &[Decomposed]) -> Vec<Vec<usize>> {
     tests
 }
 
-/// What the FRFs of a test tell of its joints' numbers, each given by its joint and its place among the six, and after them of the quantities; nothing where its file does
-/// not have it.
+/// What the FRFs of a test tell of its joints' numbers, each given by its joint and its place among the six,
+/// and after them of the quantities; nothing where its file does not have it.
 pub(crate) fn likelihood(
     joints: &[Decomposed],
     test: &[usize],
@@ -90,8 +95,9 @@ pub(crate) fn likelihood(
     Some((numbers.collect::<Option<_>>()?, likelihood))
 }
 
-/// Whether two fits have a body in common: every quantity of it that one of them moved is stated alike by both, and at least one was moved by both. What one fixture takes as exact and the other
-/// does not is not stated alike.
+/// Whether two fits have a body in common: every quantity of it that one of them moved is stated alike by
+/// both, and at least one was moved by both. What one fixture takes as exact and the other does not is not
+/// stated alike.
 fn is_same(a: &FiledJoint, b: &FiledJoint, body: &str) -> bool {
     let is_stated_by =
         |other: &FiledJoint, quantity: &StatedQuantity| other.statement(&quantity.path) == Some(quantity);
@@ -101,7 +107,8 @@ fn is_same(a: &FiledJoint, b: &FiledJoint, body: &str) -> bool {
         && a.of_body(body).any(|quantity| moved(&quantity.path))
 }
 
-/// Paths of bodies' quantities that one fixture states and another one with this body otherwise or not at all.
+/// Paths of bodies' quantities that one fixture states and another one with this body otherwise or not at
+/// all.
 pub(crate) fn differing(joints: &[Decomposed]) -> Vec<String> {
     let fits: Vec<&FiledJoint> = joints.iter().filter_map(|joint| joint.fitted.as_ref()).collect();
     let differs = |quantity: &StatedQuantity, body: &str| {
@@ -113,7 +120,8 @@ pub(crate) fn differing(joints: &[Decomposed]) -> Vec<String> {
     paths.map(|quantity| quantity.path.clone()).collect::<BTreeSet<String>>().into_iter().collect()
 }
 
-/// The tests that may share quantities: each body belongs to the first test that states the same of it, and with which all that share it agree.
+/// The tests that may share quantities: each body belongs to the first test that states the same of it, and
+/// with which all that share it agree.
 pub(crate) fn parts<'a>(joints: &'a [Decomposed], why: &[Option<WhyApart>]) -> Vec<Part<'a>> {
     let mut parts: Vec<Part> = Vec::new();
     let able = tests(joints).into_iter().filter(|test| test.iter().all(|joint| why[*joint].is_none()));

@@ -32,7 +32,8 @@ pub enum Caution {
         /// The tests that fail.
         tests: Vec<&'static str>,
     },
-    /// C is held where it just gives out no energy: the FRFs ask for one beyond, and the deviations are those of a C without this constraint.
+    /// C is held where it just gives out no energy: the FRFs ask for one beyond, and the deviations are those
+    /// of a C without this constraint.
     OnTheBoundary {
         /// Which joint.
         joint: String,
@@ -49,7 +50,8 @@ pub enum Caution {
         /// Those without.
         without: Vec<String>,
     },
-    /// Their numbers are those of laws by which C, or K, depends on frequency, each in the middle of its own band.
+    /// Their numbers are those of laws by which C, or K, depends on frequency, each in the middle of its own
+    /// band.
     Frequencies {
         /// The joints that follow such laws.
         joints: Vec<String>,
@@ -84,7 +86,8 @@ pub enum Caution {
         /// The length of each, m.
         lengths: Vec<f64>,
     },
-    /// Its FRFs contradict those of another test on bodies that both fixtures state alike; it is compared as tested on bodies of its own.
+    /// Its FRFs contradict those of another test on bodies that both fixtures state alike; it is compared as
+    /// tested on bodies of its own.
     BodiesDisagree {
         /// Which joint.
         joint: String,
@@ -179,7 +182,8 @@ fn of_other_frequencies(joints: &[Decomposed]) -> Option<Caution> {
     differs.then_some(Caution::Frequencies { joints, frequencies })
 }
 
-/// Pairs of joints of one recording: their files say that they were made from it, or what the FRFs tell is the same to the last digit.
+/// Pairs of joints of one recording: their files say that they were made from it, or what the FRFs tell is
+/// the same to the last digit.
 fn of_one_recording(joints: &[Decomposed]) -> Vec<Caution> {
     let likelihood = |joint: &Decomposed| joint.fitted.as_ref().and_then(|fit| fit.likelihood.clone());
     let is_one = |a: &Decomposed, b: &Decomposed| {

@@ -15,7 +15,8 @@ pub(crate) struct Choice {
     pub weight: f64,
     /// The joints by these laws.
     pub joints: Vec<Decomposed>,
-    /// By how much numbers are off those of the laws compared at, by joint, where files say no more of a law than that; the joints are then by these.
+    /// By how much numbers are off those of the laws compared at, by joint, where files say no more of a law
+    /// than that; the joints are then by these.
     pub apart: Option<Vec<[f64; 6]>>,
 }
 

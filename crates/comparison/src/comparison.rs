@@ -35,19 +35,22 @@ impl ElementRanking {
         self.has_deviations && self.ranking.is_settled()
     }
 
-    /// Whether the whole order may be stated: more likely right than wrong, or with nothing that tells how sure it is.
+    /// Whether the whole order may be stated: more likely right than wrong, or with nothing that tells how
+    /// sure it is.
     pub fn is_stated(&self) -> bool {
         !self.has_deviations || self.ranking.is_stated()
     }
 
-    /// Pairs of joints whose order is as good as sure, the smaller first; none where nothing tells how sure that is.
+    /// Pairs of joints whose order is as good as sure, the smaller first; none where nothing tells how sure
+    /// that is.
     pub fn decided(&self) -> impl Iterator<Item = (usize, &[usize])> {
         let of_joint =
             self.ranking.order.iter().zip(&self.ranking.decided).filter(|(_, larger)| !larger.is_empty());
         of_joint.filter(|_| self.has_deviations).map(|(joint, larger)| (*joint, larger.as_slice()))
     }
 
-    /// Of each joint in the order but the first: whether it is as good as sure that it is larger than the one before it.
+    /// Of each joint in the order but the first: whether it is as good as sure that it is larger than the one
+    /// before it.
     pub fn settled_neighbours(&self) -> impl Iterator<Item = bool> {
         self.ranking.settled_neighbours().map(|settled| self.has_deviations && settled)
     }
@@ -90,17 +93,20 @@ pub struct Comparison {
     pub compared: Compared,
     /// The numbers compared: six of symmetric matrices, eight of averages.
     pub numbers: Vec<Number>,
-    /// The law over frequency at which they are compared; nothing where no one law is probable enough for all, or where less than fits to all FRFs are compared. Each is then of its own law.
+    /// The law over frequency at which they are compared; nothing where no one law is probable enough for
+    /// all, or where less than fits to all FRFs are compared. Each is then of its own law.
     pub law: Option<LawOfAll>,
     /// All joints in one Gaussian.
     pub together: Together,
     /// Every two of them, in the order given.
     pub pairs: Vec<Pair>,
-    /// Whether all joints are the same: of the two that differ most, its p-value times the number of pairs; nothing where two are not tested.
+    /// Whether all joints are the same: of the two that differ most, its p-value times the number of pairs;
+    /// nothing where two are not tested.
     pub equality: Option<Equality>,
     /// Orders by each number of K, then of C.
     pub rankings: Vec<ElementRanking>,
-    /// Joints of models over measured ones; none where no joint is said to be of a model, or none of a measurement.
+    /// Joints of models over measured ones; none where no joint is said to be of a model, or none of a
+    /// measurement.
     pub models: Vec<ModelRatios>,
     /// Kinds with several specimens.
     pub specimens: Vec<Specimens>,
@@ -160,7 +166,8 @@ impl Comparison {
         Comparison::with(joints, &ComparisonOptions::default())
     }
 
-    /// Compares joints by the first of [`Compared`] that all of them have; by fits only where the relation is the exact one, which they are of.
+    /// Compares joints by the first of [`Compared`] that all of them have; by fits only where the relation is
+    /// the exact one, which they are of.
     ///
     /// # Errors
     /// See [`ComparisonError`].
@@ -267,8 +274,8 @@ impl Comparison {
         self.cautions.iter().any(|caution| matches!(caution, Caution::Unusable { .. }))
     }
 
-    /// Whether every element of K orders all joints, by fits to all FRFs that nothing speaks against: what does not explain its recording earns no approval, however sure the
-    /// order.
+    /// Whether every element of K orders all joints, by fits to all FRFs that nothing speaks against: what
+    /// does not explain its recording earns no approval, however sure the order.
     pub fn is_conclusive(&self) -> bool {
         let mut stiffness = self.rankings.iter().filter(|entry| entry.kind == Kind::Stiffness).peekable();
         let settled = stiffness.peek().is_some() && stiffness.all(ElementRanking::is_settled);

@@ -14,7 +14,8 @@ pub struct FiledEstimate {
     pub stiffness: Matrix,
     /// C.
     pub damping: Matrix,
-    /// Standard deviations of K: noise, the fixture's tolerances and a model that does not quite explain the FRFs, where the file states them.
+    /// Standard deviations of K: noise, the fixture's tolerances and a model that does not quite explain the
+    /// FRFs, where the file states them.
     pub stiffness_std: Matrix,
     /// Standard deviations of C.
     pub damping_std: Matrix,
@@ -33,7 +34,8 @@ pub struct Line {
     pub std: Option<(Matrix, Matrix)>,
     /// Whether noise dominates it.
     pub noisy: bool,
-    /// H41, real and imaginary parts: m/N, m/(N·m), rad/N, rad/(N·m); files of earlier versions do not have it.
+    /// H41, real and imaginary parts: m/N, m/(N·m), rad/N, rad/(N·m); files of earlier versions do not have
+    /// it.
     pub h41: Option<[[[f64; 2]; 2]; 2]>,
 }
 
@@ -247,7 +249,8 @@ fn found_at_once(name: &str, file: &Value) -> Result<Vec<Decomposed>, Decomposed
     all.iter().enumerate().map(of).collect()
 }
 
-/// The joint's name, and the joint itself where the file has it: `joint` is a name alone in earlier files, and has `failed` where there is no fit.
+/// The joint's name, and the joint itself where the file has it: `joint` is a name alone in earlier files,
+/// and has `failed` where there is no fit.
 fn joint(file: &Value) -> Option<(String, Option<FiledJoint>)> {
     let joint = &file["joint"];
     if let Some(name) = joint.as_str() {
@@ -296,7 +299,8 @@ impl From<LineEntry> for Line {
 }
 
 impl From<EstimateEntry> for FiledEstimate {
-    /// K and C with all their deviations in one: `std`, `std_fixture` and `std_model` are of independent causes.
+    /// K and C with all their deviations in one: `std`, `std_fixture` and `std_model` are of independent
+    /// causes.
     fn from(entry: EstimateEntry) -> Self {
         let parts = [entry.std, entry.std_fixture, entry.std_model];
         let together = |of: &dyn Fn(&MatrixPair) -> Matrix| -> Matrix {

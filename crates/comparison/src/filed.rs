@@ -1,4 +1,5 @@
-//! What `stiffness.json` says of the joint from all FRFs: `JointFit` of the decomposition as it is read back, with less in files of earlier versions.
+//! What `stiffness.json` says of the joint from all FRFs: `JointFit` of the decomposition as it is read back,
+//! with less in files of earlier versions.
 
 use crate::filed_likelihood::FiledLikelihood;
 use crate::stiffness_file::{ComparedLaw, FollowedLaw, Matrix, ModelError, Uncertain};
@@ -26,10 +27,12 @@ pub struct FiledJoint {
     /// The fixture's quantities that moved.
     #[serde(default)]
     pub quantities: Vec<StatedQuantity>,
-    /// The fixture's other uncertain quantities, on which its FRFs do not depend; files of earlier versions do not say.
+    /// The fixture's other uncertain quantities, on which its FRFs do not depend; files of earlier versions
+    /// do not say.
     #[serde(default)]
     pub unmoved: Vec<StatedQuantity>,
-    /// Its length where the fit has its ends, zero deviation where both are exact; files of earlier versions do not say.
+    /// Its length where the fit has its ends, zero deviation where both are exact; files of earlier versions
+    /// do not say.
     #[serde(default)]
     pub length: Option<Uncertain>,
     /// What the FRFs alone tell of it and of the quantities; files of earlier versions do not say.
@@ -55,7 +58,8 @@ pub struct FiledJoint {
     pub on_the_boundary_of_passive: bool,
 }
 
-/// Probabilities of FRFs that speak at least as much against a property, if the joint has it; nothing where it was not tested.
+/// Probabilities of FRFs that speak at least as much against a property, if the joint has it; nothing where
+/// it was not tested.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
 pub struct FiledTests {
     /// k12 = k21 and c12 = c21.
@@ -92,8 +96,8 @@ pub struct StatedQuantity {
 }
 
 impl FiledJoint {
-    /// The likelihood of the joint's numbers, by their places among the six, and after them of the quantities; nothing where the file has none that fits
-    /// its quantities.
+    /// The likelihood of the joint's numbers, by their places among the six, and after them of the
+    /// quantities; nothing where the file has none that fits its quantities.
     pub(crate) fn likelihood(&self) -> Option<(Vec<usize>, QuadraticLikelihood)> {
         self.likelihood.as_ref()?.of_six(self.quantities.len())
     }
@@ -119,7 +123,8 @@ impl FiledJoint {
         self.follows.as_ref().map_or(earlier, |follows| &follows.law)
     }
 
-    /// By how much a law is off the joint stated in the middle of the band; nothing where the file does not have it.
+    /// By how much a law is off the joint stated in the middle of the band; nothing where the file does not
+    /// have it.
     pub(crate) fn departure(&self, law: &str) -> Option<[f64; 6]> {
         let of = |name: &str| {
             let law = self.laws.iter().find(|other| other.law == name)?.in_the_middle?;

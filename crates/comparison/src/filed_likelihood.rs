@@ -3,7 +3,8 @@
 use jointscope_inference::QuadraticLikelihood;
 use serde::{Deserialize, Serialize};
 
-/// The likelihood of the joint's numbers and of the quantities, Gaussian about a point, without the quantities' priors.
+/// The likelihood of the joint's numbers and of the quantities, Gaussian about a point, without the
+/// quantities' priors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FiledLikelihood {
     /// The numbers, `k11` … or, of several joints, `J/k11` …; the quantities come after them.
@@ -47,7 +48,8 @@ impl FiledLikelihood {
         })
     }
 
-    /// Of the numbers of one joint, by their places among the six, and after them of so many quantities; nothing where it does not fit them.
+    /// Of the numbers of one joint, by their places among the six, and after them of so many quantities;
+    /// nothing where it does not fit them.
     pub(crate) fn of_six(&self, quantities: usize) -> Option<(Vec<usize>, QuadraticLikelihood)> {
         let place = |name: &String| ELEMENTS.iter().position(|element| element == name);
         let slots: Vec<usize> = self.elements.iter().map(place).collect::<Option<_>>()?;

@@ -1,8 +1,10 @@
 //! Whether joints follow one law over frequency, and which.
 //!
-//! Each file says how probable each law is by its own FRFs. If all joints follow one law, whichever it is, each law i has the evidence Πⱼ pᵢⱼ; if each has its own, all combinations are as probable beforehand: of L laws and n
-//! joints the one is Lⁿ⁻¹ Σᵢ fᵢ Πⱼ pᵢⱼ times as probable as the other. Laws with an exponent or a time are one law only where that is the same: fᵢ = ∫ Πⱼ pⱼ(x) / π(x)ⁿ⁻¹ dx, pⱼ being what test j
-//! tells of it and π what is known beforehand, is small where they are told apart.
+//! Each file says how probable each law is by its own FRFs. If all joints follow one law, whichever it is,
+//! each law i has the evidence Πⱼ pᵢⱼ; if each has its own, all combinations are as probable beforehand: of L
+//! laws and n joints the one is Lⁿ⁻¹ Σᵢ fᵢ Πⱼ pᵢⱼ times as probable as the other. Laws with an exponent or a
+//! time are one law only where that is the same: fᵢ = ∫ Πⱼ pⱼ(x) / π(x)ⁿ⁻¹ dx, pⱼ being what test j tells of
+//! it and π what is known beforehand, is small where they are told apart.
 
 use crate::{Decomposed, FiledJoint};
 use jointscope_inference::SIGNIFICANT;
@@ -64,7 +66,8 @@ fn in_common(fits: &[&FiledJoint]) -> Option<LawsInCommon> {
     Some(LawsInCommon { laws, probability: if odds.is_finite() { odds / (1.0 + odds) } else { 1.0 } })
 }
 
-/// ln f of a law: by how much more probable one exponent or time of all makes what the tests tell of it, than one of each; 0 of laws without and where a file does not say how well it is known.
+/// ln f of a law: by how much more probable one exponent or time of all makes what the tests tell of it, than
+/// one of each; 0 of laws without and where a file does not say how well it is known.
 fn ln_of_one_shape(fits: &[&FiledJoint], law: &str) -> f64 {
     let is_exponent = law.starts_with("fractional");
     if !is_exponent && !law.starts_with("standard_linear_solid") {
@@ -151,7 +154,8 @@ mod tests {
 
     #[test]
     fn exponents_that_are_told_apart_are_no_one_law_and_those_that_nothing_tells_may_be() {
-        // Normal densities of 0.4 and 0.5, each to 0.1, over a width of 0.96: e^(-0.1²/(4·0.1²))/(2·0.1·√π)·0.96.
+        // Normal densities of 0.4 and 0.5, each to 0.1, over a width of 0.96:
+        // e^(-0.1²/(4·0.1²))/(2·0.1·√π)·0.96.
         let exact = 0.96 * (-0.25f64).exp() / (0.2 * std::f64::consts::PI.sqrt());
         assert!((factor("fractional", (0.4, 0.1), (0.5, 0.1)) / exact - 1.0).abs() < 1e-2);
         assert!(factor("fractional", (0.977, 0.02), (0.02, 0.02)) < 1e-100);
@@ -163,7 +167,8 @@ mod tests {
         // Told as beforehand: 1.
         let known = factor("standard_linear_solid", (1.0, 1.5), (1.0, 1.5));
         assert!((known - 1.0).abs() < 1e-2, "{known}");
-        // ln τ of ±0.3 to 0.1: ∫ N(x; 0.3, 0.1) N(x; -0.3, 0.1)/N(x; 0, 1.5) dx = N(0.6; 0, 0.1·√2)·(1.5·√2π) about x = 0.
+        // ln τ of ±0.3 to 0.1: ∫ N(x; 0.3, 0.1) N(x; -0.3, 0.1)/N(x; 0, 1.5) dx = N(0.6; 0, 0.1·√2)·(1.5·√2π)
+        // about x = 0.
         let exact = (-0.5 * 0.36 / 0.02f64).exp() / 0.02f64.sqrt() * 1.5;
         let of = |ln: f64| (ln.exp(), 0.1 * ln.exp());
         let found = factor("standard_linear_solid", of(0.3), of(-0.3));
@@ -178,7 +183,8 @@ mod tests {
 
     #[test]
     fn tests_of_one_law_are_seldom_said_to_be_of_two_and_those_of_two_exponents_often() {
-        // A fractional law, its exponent anywhere and told to 0.05, which a viscous one imitates the better the nearer to 1 it is.
+        // A fractional law, its exponent anywhere and told to 0.05, which a viscous one imitates the better
+        // the nearer to 1 it is.
         let mut random = ChaCha8Rng::seed_from_u64(7);
         let decomposed = |exponent: f64| {
             let viscous = 0.5 * (-0.5 * ((1.0 - exponent) / 0.05).powi(2)).exp();

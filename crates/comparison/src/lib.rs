@@ -1,14 +1,18 @@
-//! Decompositions of several joints side by side, and which of them is the stiffer (Table 4), with the probability that the order is right.
+//! Decompositions of several joints side by side, and which of them is the stiffer (Table 4), with the
+//! probability that the order is right.
 //!
-//! The paper arranges joints by the averages of each element of K and says nothing of how sure the order is. Here every
-//! number has a standard deviation, and errors that joints have in common are known as such: two joints on the same blocks share what is not known of
-//! the blocks, which cancels in their ratio.
+//! The paper arranges joints by the averages of each element of K and says nothing of how sure the order is.
+//! Here every number has a standard deviation, and errors that joints have in common are known as such: two
+//! joints on the same blocks share what is not known of the blocks, which cancels in their ratio.
 //!
-//! * [`Decomposed`]: what `stiffness.json` says of one joint, by entries ([`LineEntry`], [`EstimateEntry`] …) that its writer shares;
+//! * [`Decomposed`]: what `stiffness.json` says of one joint, by entries ([`LineEntry`], [`EstimateEntry`] …)
+//!   that its writer shares;
 //! * [`Comparison`]: several of them, by one relation and one estimate;
 //! * [`Together`]: their numbers in one Gaussian, the quantities of shared bodies in it once;
-//! * [`Pair`]: difference and ratio of two with intervals, who is the larger, whether they are the same ([`Equality`]), whether they follow one law ([`LawsDiffer`]);
-//! * [`LawOfAll`]: the law over frequency at which they are compared, the most probable of all of them together;
+//! * [`Pair`]: difference and ratio of two with intervals, who is the larger, whether they are the same
+//!   ([`Equality`]), whether they follow one law ([`LawsDiffer`]);
+//! * [`LawOfAll`]: the law over frequency at which they are compared, the most probable of all of them
+//!   together;
 //! * [`Ranking`]: the order by each number with its probability;
 //! * [`ModelRatios`]: joints of models over measured ones, where it is said which is which ([`Source`]);
 //! * [`Specimens`]: the scatter between specimens of one kind, apart from that of measurement;

@@ -4,7 +4,8 @@ use crate::by_law::ByLaw;
 use crate::{Decomposed, Kind, Number, Pair, Ratio, Source};
 use serde::Serialize;
 
-/// A model's joint over a measured one. These are the ratios of their [`Pair`], the measurement being the first of it.
+/// A model's joint over a measured one. These are the ratios of their [`Pair`], the measurement being the
+/// first of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct ModelRatios {
@@ -23,7 +24,8 @@ pub struct ModelRatios {
 pub struct ModelRatio {
     /// `K11` ….
     pub element: String,
-    /// Model over measurement; nothing where the measured number cannot be told from zero, or one of them has no deviation.
+    /// Model over measurement; nothing where the measured number cannot be told from zero, or one of them has
+    /// no deviation.
     pub ratio: Option<Ratio>,
     /// What the ratio's interval says.
     pub model_is: Option<ModelIs>,
@@ -58,7 +60,8 @@ impl ModelIs {
 }
 
 impl ModelRatios {
-    /// Every model over every measurement. Of joints found at once those of one name are of one kind, others are not set against each other.
+    /// Every model over every measurement. Of joints found at once those of one name are of one kind, others
+    /// are not set against each other.
     pub(crate) fn all(joints: &[Decomposed], by_law: &ByLaw, numbers: &[Number]) -> Vec<Self> {
         let of = |wanted: fn(Source) -> bool| {
             let sources = joints.iter().enumerate().map(|(place, joint)| (place, joint.source));

@@ -32,7 +32,8 @@ pub(crate) fn chi2_quantile(above: f64, degrees: usize) -> f64 {
     0.5 * (low + high)
 }
 
-/// 95 % interval of the ratio b/a of two normal numbers (Fieller): every r that b − r·a does not exclude. `None` where a cannot be told from zero.
+/// 95 % interval of the ratio b/a of two normal numbers (Fieller): every r that b − r·a does not exclude.
+/// `None` where a cannot be told from zero.
 pub(crate) fn ratio_interval(a: f64, b: f64, [aa, ab, bb]: [f64; 3]) -> Option<[f64; 2]> {
     let z2 = Z95 * Z95;
     let (first, middle, last) = (a * a - z2 * aa, a * b - z2 * ab, b * b - z2 * bb);
@@ -73,7 +74,8 @@ fn bisected(mut low: f64, mut high: f64, is_beyond: impl Fn(f64) -> bool) -> f64
     0.5 * (low + high)
 }
 
-/// The same of the ratio b/a, normal by each law with a weight, a, b and their variances and covariance: every r that b − r·a does not exclude. `None` where a cannot be told from zero by one of them.
+/// The same of the ratio b/a, normal by each law with a weight, a, b and their variances and covariance:
+/// every r that b − r·a does not exclude. `None` where a cannot be told from zero by one of them.
 pub(crate) fn mixed_ratio_interval(parts: &[(f64, [f64; 2], [f64; 3])]) -> Option<[f64; 2]> {
     let each: Option<Vec<[f64; 2]>> =
         parts.iter().map(|&(_, [a, b], variances)| ratio_interval(a, b, variances)).collect();
@@ -90,7 +92,8 @@ pub(crate) fn mixed_ratio_interval(parts: &[(f64, [f64; 2], [f64; 3])]) -> Optio
         parts.iter().map(of).sum::<f64>() / total
     };
     let outside = cumulative(-Z95);
-    // Every part's interval holds all but this share of it: the mixture's lies between the outermost of their ends.
+    // Every part's interval holds all but this share of it: the mixture's lies between the outermost of their
+    // ends.
     let low = each.iter().map(|[low, _]| *low).fold(f64::INFINITY, f64::min);
     let high = each.iter().map(|[_, high]| *high).fold(f64::NEG_INFINITY, f64::max);
     Some([outside, 1.0 - outside].map(|share| bisected(low, high, |r| below(r) > share)))
@@ -140,8 +143,8 @@ pub(crate) fn larger_magnitude(a: f64, b: f64, [aa, ab, bb]: [f64; 3]) -> f64 {
     ends.windows(2).map(piece).sum::<f64>().clamp(0.0, 1.0)
 }
 
-/// χ² of a vector of mean zero and this covariance, row-major, with its degrees of freedom. Numbers without a variance and combinations that others fix are left out;
-/// `None` where none is left.
+/// χ² of a vector of mean zero and this covariance, row-major, with its degrees of freedom. Numbers without a
+/// variance and combinations that others fix are left out; `None` where none is left.
 pub(crate) fn mahalanobis(values: &[f64], covariance: &[f64]) -> Option<(f64, usize)> {
     let n = values.len();
     let largest = |i: usize| covariance[i * n + i] > 0.0;

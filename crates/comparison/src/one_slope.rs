@@ -1,9 +1,12 @@
 //! Joints that move alike with the fixture's quantities.
 //!
-//! Near its optimum a fit tells θ + S q, S = J_θθ⁻¹ J_θq being by how much the numbers θ of the joint move with the quantities q for the same FRFs. FRFs are not linear in q: two fits that
-//! end at other q of one flat valley have slopes S that differ, and with quantities of which the FRFs tell nothing that difference alone looks like an uncertain difference of
-//! the joints. If the joints are the same and the blocks are, so is the valley. Its slope between two points on it is the mean of those at both to second order (the trapezoidal rule),
-//! so that whether joints are the same is tested with the mean slope of all of them. What each test tells of q stays as it is.
+//! Near its optimum a fit tells θ + S q, S = J_θθ⁻¹ J_θq being by how much the numbers θ of the joint move
+//! with the quantities q for the same FRFs. FRFs are not linear in q: two fits that end at other q of one
+//! flat valley have slopes S that differ, and with quantities of which the FRFs tell nothing that difference
+//! alone looks like an uncertain difference of the joints. If the joints are the same and the blocks are, so
+//! is the valley. Its slope between two points on it is the mean of those at both to second order (the
+//! trapezoidal rule), so that whether joints are the same is tested with the mean slope of all of them. What
+//! each test tells of q stays as it is.
 
 use crate::{Decomposed, FiledJoint, FiledLikelihood};
 use jointscope_inference::QuadraticLikelihood;
@@ -67,7 +70,8 @@ fn is_alike(a: &FiledJoint, b: &FiledJoint) -> bool {
     elements(a).is_some() && elements(a) == elements(b) && a.quantities == b.quantities
 }
 
-/// The joints with the mean slope of those that are of the same numbers and quantities; the others stay, and so do joints that one fit found at once.
+/// The joints with the mean slope of those that are of the same numbers and quantities; the others stay, and
+/// so do joints that one fit found at once.
 pub(crate) fn of_one_slope(joints: &[Decomposed]) -> Vec<Decomposed> {
     let fit = |joint: &Decomposed| joint.fitted.clone().filter(|_| joint.at_once.is_none());
     let fits: Vec<Option<(FiledJoint, Valley)>> = joints

@@ -45,7 +45,8 @@ pub struct PairedNumber {
     pub unit: &'static str,
     /// Second less first.
     pub difference: FigureInterval,
-    /// Second over first; nothing where the first cannot be told from zero, where one of them has no deviation, and for places.
+    /// Second over first; nothing where the first cannot be told from zero, where one of them has no
+    /// deviation, and for places.
     pub ratio: Option<Ratio>,
     /// Correlation of the two errors; nothing where one of them has none.
     pub correlation: Option<f64>,
@@ -91,7 +92,8 @@ impl Equality {
         Some(Equality { p_value: (most.p_value * each.len() as f64).min(1.0), ..*most })
     }
 
-    /// The same by each of several laws: χ² is of the first, the p-value the mean of all, each as often as it is probable.
+    /// The same by each of several laws: χ² is of the first, the p-value the mean of all, each as often as it
+    /// is probable.
     pub(crate) fn by_law(by: &ByLaw, numbers: &[Number]) -> Option<Self> {
         let each = by.iter().map(|(weight, of)| Some((*weight, Equality::of_all(of, &[0, 1], numbers)?)));
         let each: Vec<Option<(f64, Equality)>> = each.collect();
@@ -139,8 +141,9 @@ pub struct Pair {
     pub second: String,
     /// By number.
     pub numbers: Vec<PairedNumber>,
-    /// Whether all numbers of both are the same; nothing where none has a deviation, or where averages and fits to the FRFs across are compared, whose files do not say
-    /// how the errors of their numbers go together.
+    /// Whether all numbers of both are the same; nothing where none has a deviation, or where averages and
+    /// fits to the FRFs across are compared, whose files do not say how the errors of their numbers go
+    /// together.
     pub equality: Option<Equality>,
     /// Numbers that this test leaves out, since neither joint's FRFs tell anything of them.
     #[serde(rename = "untold", skip_serializing_if = "Vec::is_empty")]
@@ -195,7 +198,8 @@ const DERIVED: [Derived; 2] = [
 ];
 
 impl Pair {
-    /// Of two joints of all, by each choice of their laws; `tested` is by what they, as the only two, are tested for being the same.
+    /// Of two joints of all, by each choice of their laws; `tested` is by what they, as the only two, are
+    /// tested for being the same.
     pub(crate) fn of(
         by_law: &ByLaw,
         numbers: &[Number],
@@ -275,7 +279,8 @@ fn derived(by_law: &ByLaw, numbers: &[Number], (first, second): (usize, usize)) 
 }
 
 impl PairedNumber {
-    /// Values are those of the first part; the interval is that of all, each as often as it is probable, and the standard deviation what a normal number with such an interval has.
+    /// Values are those of the first part; the interval is that of all, each as often as it is probable, and
+    /// the standard deviation what a normal number with such an interval has.
     fn of((element, unit): (String, &'static str), parts: &[Part], is_place: bool) -> Self {
         let (_, [a, b], [aa, ab, bb]) = parts[0];
         let ratio = || {

@@ -53,7 +53,8 @@ impl Ranking {
         Ranking::joint(&values.iter().map(|(value, _)| *value).collect::<Vec<_>>(), &covariance)
     }
 
-    /// Ranks jointly normal values with this covariance (row-major) by magnitude: errors that all have in common leave the order alone.
+    /// Ranks jointly normal values with this covariance (row-major) by magnitude: errors that all have in
+    /// common leave the order alone.
     pub fn joint(values: &[f64], covariance: &[f64]) -> Self {
         let count = values.len();
         let mut order: Vec<usize> = (0..count).collect();
@@ -181,8 +182,8 @@ mod tests {
 
     #[test]
     fn an_order_said_to_be_right_so_often_is_right_so_often() {
-        // Five joints of stiffness 1 to 2, measured to 0.08, three hundred times: in each tenth of the stated probability the share of right
-        // orders is the stated one to within what so few can show.
+        // Five joints of stiffness 1 to 2, measured to 0.08, three hundred times: in each tenth of the stated
+        // probability the share of right orders is the stated one to within what so few can show.
         let mut random = ChaCha8Rng::seed_from_u64(7);
         let (mut said, mut was) = (0.0, 0.0);
         let mut tenths = [(0.0, 0.0, 0.0); 10];

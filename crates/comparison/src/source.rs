@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-/// Where the FRFs come from that a joint was taken out of: the paper's columns SIM, EXP and FEM (Table 1). No file says it, whoever compares does.
+/// Where the FRFs come from that a joint was taken out of: the paper's columns SIM, EXP and FEM (Table 1). No
+/// file says it, whoever compares does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Source {

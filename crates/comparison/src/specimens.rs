@@ -1,8 +1,10 @@
 //! Several specimens of one kind: how far they scatter, apart from how well each is measured.
 //!
-//! A number of specimen i is x_i = μ + b_i + e_i: b_i is what the specimens differ by, normal with the standard deviation τ; e_i the error of measurement, whose covariance is known, common
-//! errors included. With n − 1 orthonormal contrasts A, y = A x is free of μ and has the covariance A V Aᵀ + τ², so that Q(τ²) = yᵀ (A V Aᵀ + τ²)⁻¹ y is χ² with n − 1
-//! degrees of freedom for the true τ: its quantiles give an exact interval, Q = n − 1 the estimate (Mandel and Paule), Q(0) the test of equal specimens.
+//! A number of specimen i is x_i = μ + b_i + e_i: b_i is what the specimens differ by, normal with the
+//! standard deviation τ; e_i the error of measurement, whose covariance is known, common errors included.
+//! With n − 1 orthonormal contrasts A, y = A x is free of μ and has the covariance A V Aᵀ + τ², so that
+//! Q(τ²) = yᵀ (A V Aᵀ + τ²)⁻¹ y is χ² with n − 1 degrees of freedom for the true τ: its quantiles give an
+//! exact interval, Q = n − 1 the estimate (Mandel and Paule), Q(0) the test of equal specimens.
 
 use crate::normal::{chi2_above, chi2_quantile};
 use crate::{FigureInterval, Number, Together};
@@ -34,10 +36,12 @@ pub struct Scatter {
     pub mean: FigureInterval,
     /// Standard deviation between specimens.
     pub between: f64,
-    /// Its 95 % interval: from zero where the measurement explains the scatter, without an upper end where specimens are closer to each other than errors of measurement leave them
-    /// in 97.5 of 100 cases, so that no scatter at all explains them.
+    /// Its 95 % interval: from zero where the measurement explains the scatter, without an upper end where
+    /// specimens are closer to each other than errors of measurement leave them in 97.5 of 100 cases, so that
+    /// no scatter at all explains them.
     pub between_ci95: (f64, Option<f64>),
-    /// Standard deviation of measurement in what specimens differ by: errors that all share are no part of it.
+    /// Standard deviation of measurement in what specimens differ by: errors that all share are no part of
+    /// it.
     pub measurement: f64,
     /// Probability of a scatter as large or larger, if the specimens are the same.
     pub p_value: f64,

@@ -81,7 +81,8 @@ pub struct Nominal {
 pub struct ModelError {
     /// Of the noise's variance; 1 where noise and tolerances explain the FRFs.
     pub inflation: f64,
-    /// Of the posterior's, where quantities are farther from what is stated than chance takes them; 1 where they are not.
+    /// Of the posterior's, where quantities are farther from what is stated than chance takes them; 1 where
+    /// they are not.
     #[serde(rename = "strain")]
     pub tolerance_inflation: f64,
     /// What of the covariance comes from it besides.
@@ -174,7 +175,8 @@ pub struct ComparedLaw {
     /// K and C in the middle of the band; files of earlier versions do not say.
     #[serde(default, deserialize_with = "where_whole")]
     pub in_the_middle: Option<MatrixPair>,
-    /// What the FRFs tell of K and C there under this law, of probable laws that the joint's numbers are not of; files of earlier versions do not say.
+    /// What the FRFs tell of K and C there under this law, of probable laws that the joint's numbers are not
+    /// of; files of earlier versions do not say.
     #[serde(default, deserialize_with = "where_whole", skip_serializing_if = "Option::is_none")]
     pub likelihood: Option<FiledLikelihood>,
 }

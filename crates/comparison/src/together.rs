@@ -1,17 +1,20 @@
 //! All joints in one Gaussian: their numbers, and how the errors of one are those of another.
 //!
-//! Each fit tells of its joint and of the fixture's quantities what a Gaussian likelihood does. Of joints tested on the same blocks these quantities are the same:
-//! the likelihoods are multiplied, with one set of quantities, whose prior enters once. The posterior then has both joints, and what the blocks' tolerances do to one they do to
-//! the other: it cancels in their difference. What the fits get wrong besides is added to each joint by itself, what laws over frequency differ by to all that follow one.
+//! Each fit tells of its joint and of the fixture's quantities what a Gaussian likelihood does. Of joints
+//! tested on the same blocks these quantities are the same: the likelihoods are multiplied, with one set of
+//! quantities, whose prior enters once. The posterior then has both joints, and what the blocks' tolerances
+//! do to one they do to the other: it cancels in their difference. What the fits get wrong besides is added
+//! to each joint by itself, what laws over frequency differ by to all that follow one.
 //!
-//! Where the common quantities are farther from what is stated than chance takes them, the posterior is widened by Birge's ratio, as that of one fit is: each group of joints
-//! that bodies connect by its own.
+//! Where the common quantities are farther from what is stated than chance takes them, the posterior is
+//! widened by Birge's ratio, as that of one fit is: each group of joints that bodies connect by its own.
 //!
-//! A body is the same in two tests where both fixtures say the same of it: every quantity of it and of the points on it that either fit moved has the same value and standard
-//! deviation in both. Supports, damping, channels and other joints are taken as set up anew.
+//! A body is the same in two tests where both fixtures say the same of it: every quantity of it and of the
+//! points on it that either fit moved has the same value and standard deviation in both. Supports, damping,
+//! channels and other joints are taken as set up anew.
 //!
-//! A joint whose C is held where it just gives out no energy keeps what its file states: the likelihood is that of a C without this constraint, and with it the joint would be one that
-//! physics forbids.
+//! A joint whose C is held where it just gives out no energy keeps what its file states: the likelihood is
+//! that of a C without this constraint, and with it the joint would be one that physics forbids.
 
 use crate::bodies::{Part, connected, differing, likelihood, parts, shared, sharing_a_body, tests};
 use crate::choices::Choice;
@@ -33,7 +36,8 @@ pub struct Together {
     pub shared: Vec<SharedBody>,
     /// Joints that share nothing, and why.
     pub apart: Vec<Apart>,
-    /// Joints that one fit found at once, group by group: their errors go together as its file says, noise included.
+    /// Joints that one fit found at once, group by group: their errors go together as its file says, noise
+    /// included.
     pub at_once: Vec<Vec<String>>,
     /// Joints that are taken to follow one law over frequency, group by group.
     pub one_law: Vec<Vec<String>>,
@@ -46,7 +50,8 @@ fn part(test: &[usize], why: &mut [Option<WhyApart>], reason: WhyApart) {
     test.iter().for_each(|&joint| why[joint] = Some(reason));
 }
 
-/// Why joints are apart before anything is said of their bodies; and which would share a body with another test but for being on the boundary.
+/// Why joints are apart before anything is said of their bodies; and which would share a body with another
+/// test but for being on the boundary.
 fn apart_beforehand(
     joints: &[Decomposed],
     tests: &[Vec<usize>],
@@ -86,8 +91,9 @@ impl Together {
         together
     }
 
-    /// Of joints fitted to all FRFs; `asked_apart` takes them all as tested on blocks of their own. Whether tests contradict each other on the blocks is asked of the joints under every choice of their laws: by a
-    /// law that does not hold a fit bends the blocks to make up for it.
+    /// Of joints fitted to all FRFs; `asked_apart` takes them all as tested on blocks of their own. Whether
+    /// tests contradict each other on the blocks is asked of the joints under every choice of their laws: by
+    /// a law that does not hold a fit bends the blocks to make up for it.
     pub(crate) fn of(
         (joints, choices): (&[Decomposed], &[Choice]),
         numbers: &[Number],
@@ -206,7 +212,8 @@ impl Together {
         }
     }
 
-    /// Puts in the posterior of all these tests with the quantities that they share; `None` where it is not determined to working precision.
+    /// Puts in the posterior of all these tests with the quantities that they share; `None` where it is not
+    /// determined to working precision.
     fn tie(&mut self, parts: &[Part], numbers: &[Number]) -> Option<()> {
         let mut places: BTreeMap<(&str, usize), usize> = BTreeMap::new();
         let mut tests = Vec::new();
@@ -281,7 +288,8 @@ impl Together {
     }
 }
 
-/// Birge's ratio of quantities' squared departures from what is stated to what chance makes of them (each given with it); 1 where chance explains them.
+/// Birge's ratio of quantities' squared departures from what is stated to what chance makes of them (each
+/// given with it); 1 where chance explains them.
 fn tolerance_inflation(departures: impl Iterator<Item = (f64, f64)>) -> f64 {
     let (squares, expected) =
         departures.fold((0.0, 0.0), |(s, e), (square, chance)| (s + square, e + chance.clamp(0.0, 1.0)));

@@ -41,8 +41,8 @@ pub enum DampingLaw {
     LossFactor(f64),
 }
 
-/// Share of a mode's strain energy in supports above which it is a suspension's: a structure hung up for a test moves as rigid at less than a fifth of the
-/// frequency at which it bends.
+/// Share of a mode's strain energy in supports above which it is a suspension's: a structure hung up for a
+/// test moves as rigid at less than a fifth of the frequency at which it bends.
 const SUSPENDED: f64 = 0.95;
 
 /// A mass-normalised mode of an assembly on supports.
@@ -56,8 +56,8 @@ pub struct HeldMode {
     pub dashpots: f64,
 }
 
-/// The places of the modes that have a ratio of their own: not motions as rigid, and not modes of a suspension, in which hardly anything but supports is strained,
-/// unless no mode is any other.
+/// The places of the modes that have a ratio of their own: not motions as rigid, and not modes of a
+/// suspension, in which hardly anything but supports is strained, unless no mode is any other.
 pub fn elastic_modes(modes: &[HeldMode]) -> Vec<usize> {
     let moves = |r: &usize| modes[*r].eigenvalue > 0.0;
     let strains = |r: &usize| modes[*r].in_supports <= SUSPENDED;
@@ -100,10 +100,12 @@ impl DampingLaw {
             .collect()
     }
 
-    /// The damping of each mode of an assembly that is tested as it stands on its supports, modes in ascending frequency; what its dashpots contribute to the
-    /// ratios that a test reads is taken off, for they stand in the model themselves.
+    /// The damping of each mode of an assembly that is tested as it stands on its supports, modes in
+    /// ascending frequency; what its dashpots contribute to the ratios that a test reads is taken off, for
+    /// they stand in the model themselves.
     ///
-    /// Ratios are those of the [`elastic_modes`]. Laws other than [`DampingLaw::ModalRatios`] know no supports.
+    /// Ratios are those of the [`elastic_modes`]. Laws other than [`DampingLaw::ModalRatios`] know no
+    /// supports.
     pub fn of_held_modes(&self, modes: &[HeldMode]) -> Vec<ModeDamping> {
         let DampingLaw::ModalRatios(ratios) = self else {
             return self.of_modes(&modes.iter().map(|mode| mode.eigenvalue).collect::<Vec<_>>());
@@ -184,8 +186,8 @@ mod tests {
             let found = c[(i - 1) * 4 + j - 1];
             assert!((found - value).abs() <= rounding, "C({i},{j}) = {found}, eq (40) has {value}");
         }
-        // (1,4) is printed 0.06 too, but 0.06 + 0.06 = 1.5 L needs L = 0.080 m where row 2 needs 0.067 m: with
-        // the dimensions that give everything else it is 0.037, as a rigid rotation demands.
+        // (1,4) is printed 0.06 too, but 0.06 + 0.06 = 1.5 L needs L = 0.080 m where row 2 needs 0.067 m:
+        // with the dimensions that give everything else it is 0.037, as a rigid rotation demands.
         assert!((c[1] + c[3] - 0.0651 * c[0]).abs() < 1e-12 && (c[3] - 0.037).abs() < 0.0005, "{}", c[3]);
     }
 

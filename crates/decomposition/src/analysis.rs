@@ -32,7 +32,8 @@ pub struct Analysis {
     pub joint_fit: Result<JointFit, DecompositionError>,
     /// The maximum-likelihood joint from the FRFs across it, or why there is none.
     pub likelihood: Result<LikelihoodFit, DecompositionError>,
-    /// The joint's interfaces, where it is a beam and a fit succeeded; see [`interfaces_rest_on`](Self::interfaces_rest_on).
+    /// The joint's interfaces, where it is a beam and a fit succeeded; see
+    /// [`interfaces_rest_on`](Self::interfaces_rest_on).
     pub interfaces: Option<Interfaces>,
     /// The same line by line, by the exact relation; of a beam between blocks that rotate.
     pub interface_spectrum: Option<InterfaceSpectrum>,
@@ -49,13 +50,14 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// Whether K and C by line, which know of no mass of the joint, hold one that the joint from all FRFs has: the two are not to be compared.
+    /// Whether K and C by line, which know of no mass of the joint, hold one that the joint from all FRFs
+    /// has: the two are not to be compared.
     pub fn lines_hold_mass(&self) -> bool {
         self.joint_fit.as_ref().is_ok_and(|fit| fit.mass.is_some())
     }
 
-    /// The fit that the interfaces are taken from, and whether it explains the FRFs: the joint from all FRFs, or that from the FRFs across where
-    /// it alone does.
+    /// The fit that the interfaces are taken from, and whether it explains the FRFs: the joint from all FRFs,
+    /// or that from the FRFs across where it alone does.
     pub fn interfaces_rest_on(&self) -> Option<(Method, bool)> {
         self.interfaces.as_ref()?;
         Some(match interfaces_rest_on(&self.joint_fit, &self.likelihood)? {
@@ -74,7 +76,8 @@ impl Analysis {
         root_of_squares(self.tolerances.iter().filter_map(|share| share.likelihood))
     }
 
-    /// What the fixture as it stands predicts for an element at a line of the recording; nothing where that is not known.
+    /// What the fixture as it stands predicts for an element at a line of the recording; nothing where that
+    /// is not known.
     pub fn nominal_at(&self, line: usize, part: DynamicStiffnessPart, element: MatrixElement) -> Option<f64> {
         let (_, joint) = self.nominal.get(line)?.as_ref().filter(|_| !self.spectrum.scalar)?;
         Some(element.of(&part.of(self.spectrum.stiffness_and_damping(line, *joint))))
@@ -82,7 +85,8 @@ impl Analysis {
 
     /// The fixture's element over the averaging band, on the lines that the averages were taken over.
     ///
-    /// For the exact relation a stiffness is the joint's own; what eq (7) (`paper`) makes of it, and every damping, is a mean over lines.
+    /// For the exact relation a stiffness is the joint's own; what eq (7) (`paper`) makes of it, and every
+    /// damping, is a mean over lines.
     pub fn nominal_average(
         &self,
         part: DynamicStiffnessPart,

@@ -1,4 +1,5 @@
-//! A joint's K and C as means over a band, plain (35, 42) and weighted, with the deviations that noise gives them.
+//! A joint's K and C as means over a band, plain (35, 42) and weighted, with the deviations that noise gives
+//! them.
 
 use crate::spectrum::{element_std, sensitivity};
 use crate::{DecompositionError, JointSpectrum, Relation};
@@ -29,15 +30,16 @@ pub struct Averages {
     pub lines: usize,
     /// Plain means (eq 35, 42).
     pub plain: MatrixAverage,
-    /// Means with weights of one over the variances that a constant joint would give; absent without variances.
+    /// Means with weights of one over the variances that a constant joint would give; absent without
+    /// variances.
     pub weighted: Option<MatrixAverage>,
 }
 
 impl Averages {
     /// Averages over `band`, or over the band in which plain means come out most precise.
     ///
-    /// The weights are those of `model`, a dynamic stiffness K and C for the exact relation: taken from the measured
-    /// values themselves they would be biased.
+    /// The weights are those of `model`, a dynamic stiffness K and C for the exact relation: taken from the
+    /// measured values themselves they would be biased.
     ///
     /// # Errors
     /// A band without usable lines.
@@ -85,7 +87,8 @@ fn elements(scalar: bool) -> &'static [(usize, usize)] {
 
 type Mean = fn(&[f64], &[f64]) -> Result<jointscope_averaging::Average, AveragingError>;
 
-/// Averages every element over the solved lines in `range`; `std` is that of the dynamic stiffness's real part and of its imaginary one.
+/// Averages every element over the solved lines in `range`; `std` is that of the dynamic stiffness's real
+/// part and of its imaginary one.
 fn average(
     spectrum: &JointSpectrum,
     range: std::ops::Range<usize>,
@@ -109,8 +112,8 @@ fn average(
     Ok(result)
 }
 
-/// Standard deviations of the real (and of the imaginary) part of the dynamic stiffness's elements on each solved line if the joint were `model`;
-/// `None` without variances.
+/// Standard deviations of the real (and of the imaginary) part of the dynamic stiffness's elements on each
+/// solved line if the joint were `model`; `None` without variances.
 fn expected_std(spectrum: &JointSpectrum, model: (RealMatrix2, RealMatrix2)) -> Option<Vec<RealMatrix2>> {
     let covariance = spectrum.h41.covariance.as_ref()?;
     let sides = &spectrum.sides;

@@ -9,8 +9,9 @@ use jointscope_linalg::{ComplexMatrix2, RealMatrix2};
 use num_complex::Complex64;
 
 impl Analysis {
-    /// K and C that the spectrum's relation makes of the joint from all FRFs on a line of the recording, its mass included: lines are solved as if the joint had none, so that they
-    /// hold its inertia. The fixture is taken as stated, as it is for the lines themselves.
+    /// K and C that the spectrum's relation makes of the joint from all FRFs on a line of the recording, its
+    /// mass included: lines are solved as if the joint had none, so that they hold its inertia. The fixture
+    /// is taken as stated, as it is for the lines themselves.
     ///
     /// `None` without such a fit, at 0 Hz, and where a matrix is singular.
     pub fn fitted_at(&self, line: usize) -> Option<(RealMatrix2, RealMatrix2)> {
@@ -28,8 +29,8 @@ impl Analysis {
         found.is_finite().then(|| spectrum.stiffness_and_damping(line, found))
     }
 
-    /// K and C that the [interfaces by line](Self::interface_spectrum) would have if the joint were as it was fitted: of the translation, of the near and of the
-    /// far rotation.
+    /// K and C that the [interfaces by line](Self::interface_spectrum) would have if the joint were as it was
+    /// fitted: of the translation, of the near and of the far rotation.
     ///
     /// `None` without such a fit or without interfaces by line, at 0 Hz, and where a matrix is singular.
     pub fn fitted_interfaces_at(&self, line: usize) -> Option<[(f64, f64); 3]> {
@@ -46,7 +47,8 @@ impl Analysis {
     }
 }
 
-/// H41 of two sides on a joint of dynamic stiffness Z on d = u_to − R·u_from with s²M on its ends: forces on the ends are −(TᵀZT + s²M) u, T = [−R, I].
+/// H41 of two sides on a joint of dynamic stiffness Z on d = u_to − R·u_from with s²M on its ends: forces on
+/// the ends are −(TᵀZT + s²M) u, T = [−R, I].
 fn coupled(
     z: ComplexMatrix2,
     inertia: [[ComplexMatrix2; 2]; 2],

@@ -46,8 +46,8 @@ impl Judgement {
     }
 }
 
-/// The element that the fit and the weighted mean differ in most; nothing where they agree, are of different relations, or the fitted joint has a mass,
-/// which the lines hold as well.
+/// The element that the fit and the weighted mean differ in most; nothing where they agree, are of different
+/// relations, or the fitted joint has a mass, which the lines hold as well.
 fn contradiction(analysis: &Analysis, best: &JointEstimate) -> Option<Contradiction> {
     if !matches!(best.method, Method::MaximumLikelihood | Method::AllFrfs)
         || analysis.spectrum.relation == Relation::Paper

@@ -1,4 +1,5 @@
-//! Which FRFs of a recording cross a joint, and which of them tell the motion of one side due to loads on the other.
+//! Which FRFs of a recording cross a joint, and which of them tell the motion of one side due to loads on the
+//! other.
 
 use crate::Sides;
 use jointscope_frf::{BlockChannel, BlockLayout};
@@ -81,8 +82,8 @@ struct Crossing<'a> {
 }
 
 impl CrossingFrfs {
-    /// Chooses the FRFs: those between the pair of blocks, one on each side, that most FRFs connect; of equals,
-    /// the blocks that the joint itself connects.
+    /// Chooses the FRFs: those between the pair of blocks, one on each side, that most FRFs connect; of
+    /// equals, the blocks that the joint itself connects.
     ///
     /// # Errors
     /// See [`CrossingError`].

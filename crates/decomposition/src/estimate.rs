@@ -1,4 +1,5 @@
-//! One estimate of K and C whatever the method, its deviation split into what noise and what the fixture's tolerances do.
+//! One estimate of K and C whatever the method, its deviation split into what noise and what the fixture's
+//! tolerances do.
 
 use crate::settings::estimates::NOT_DETERMINED;
 use jointscope_inference::Z95;
@@ -6,8 +7,8 @@ use jointscope_linalg::RealMatrix2;
 
 use crate::{Analysis, DynamicStiffnessPart, MatrixAverage, MatrixElement, Method, Relation};
 
-/// K and C with standard deviations from noise and from the fixture's tolerances. The fit's noise holds also what it costs that
-/// a constant joint does not explain the FRFs.
+/// K and C with standard deviations from noise and from the fixture's tolerances. The fit's noise holds also
+/// what it costs that a constant joint does not explain the FRFs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JointEstimate {
     /// Where it comes from.
@@ -26,7 +27,8 @@ pub struct ElementFigure {
     pub value: f64,
     /// Standard deviation by noise (of a fit: and misfit).
     pub noise: f64,
-    /// Standard deviation by the fixture's tolerances; not known for weighted means, part of the other one for the joint from all FRFs.
+    /// Standard deviation by the fixture's tolerances; not known for weighted means, part of the other one
+    /// for the joint from all FRFs.
     pub tolerance: Option<f64>,
 }
 
@@ -48,7 +50,8 @@ impl ElementFigure {
 }
 
 impl JointEstimate {
-    /// The joint from all FRFs; where there is none, the maximum-likelihood joint, then the mean of what the relation gives.
+    /// The joint from all FRFs; where there is none, the maximum-likelihood joint, then the mean of what the
+    /// relation gives.
     pub fn best(analysis: &Analysis) -> Self {
         let mean = || {
             let tolerance = Some(analysis.tolerance_of_averages());

@@ -28,7 +28,8 @@ pub struct AnalysisOptions {
     pub band: Option<Band>,
     /// Take the fixture's bare numbers as exact.
     pub exact: bool,
-    /// Compare laws of the joint's stiffness and damping over frequency, which takes ten times as long as all else.
+    /// Compare laws of the joint's stiffness and damping over frequency, which takes ten times as long as all
+    /// else.
     pub laws: bool,
 }
 
@@ -48,8 +49,9 @@ impl AnalysisOptions {
 impl Analysis {
     /// Decomposes `frfs` for a joint of `fixture`.
     ///
-    /// Variances are estimated from coherence and averages where the set has them, from its scatter elsewhere; those
-    /// that the set carries already are kept. Lines of long recordings are merged ([`KnownNoise`]).
+    /// Variances are estimated from coherence and averages where the set has them, from its scatter
+    /// elsewhere; those that the set carries already are kept. Lines of long recordings are merged
+    /// ([`KnownNoise`]).
     ///
     /// # Errors
     /// See [`DecompositionError`].
@@ -125,7 +127,8 @@ fn fitted_interfaces(fit: &JointFit, sides: &Sides, exact: bool) -> Option<Inter
     let bending_stiffness = youngs_modulus.value * second_moment.value;
     let known = [(youngs_modulus, Nature::YoungsModulus), (second_moment, Nature::SecondMoment)]
         .map(|(quantity, nature)| quantity.std(nature, exact).unwrap_or(0.0) / quantity.value);
-    // What a beam and the springs at its ends are together is known at rest; what a law adds over frequency is inertia along the beam, or relaxation.
+    // What a beam and the springs at its ends are together is known at rest; what a law adds over frequency
+    // is inertia along the beam, or relaxation.
     interfaces_of_fit(
         fit.follows.fit.stiffness,
         covariance,
@@ -142,7 +145,8 @@ fn joint_interfaces(fit: &LikelihoodFit, sides: &Sides, tolerances: &[ToleranceS
     interfaces(fit.stiffness, covariance, bending_stiffness, sides.length(), &shifts)
 }
 
-/// H41 of the whole fixture between the plan's reference points, and what the spectrum's relation makes of it.
+/// H41 of the whole fixture between the plan's reference points, and what the spectrum's relation makes of
+/// it.
 fn predicted(
     sides: &Sides,
     plan: &CrossingFrfs,

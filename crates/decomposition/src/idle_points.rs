@@ -1,7 +1,8 @@
 //! Points whose places no FRF depends on.
 //!
-//! A geometry from an analyser has thousands of points, a hammer test uses a few of them. A point that is no channel of the recording, holds nothing and
-//! bears no effect has a derivative of exactly zero, which need not be computed.
+//! A geometry from an analyser has thousands of points, a hammer test uses a few of them. A point that is no
+//! channel of the recording, holds nothing and bears no effect has a derivative of exactly zero, which need
+//! not be computed.
 
 use jointscope_fixture::{Fixture, Place, QuantityOwner};
 use jointscope_spectra::FrfPair;

@@ -4,7 +4,8 @@ use jointscope_beam::mass_of_ends;
 use jointscope_linalg::{ComplexMatrix2, Matrix2};
 use num_complex::Complex64;
 
-/// s²M of a uniform `mass` (kg) over a joint of this length (m) on the motion of its ends, by near and far end.
+/// s²M of a uniform `mass` (kg) over a joint of this length (m) on the motion of its ends, by near and far
+/// end.
 pub(crate) fn inertia_of_ends(mass: f64, length: f64, s: Complex64) -> [[ComplexMatrix2; 2]; 2] {
     let all = mass_of_ends(mass, length);
     let between = |row: usize, column: usize| {

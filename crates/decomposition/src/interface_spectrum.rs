@@ -1,8 +1,10 @@
-//! The interfaces line by line (eq 6): the complex compliance D(ω) = k_J⁻¹ − k_E⁻¹, and the springs and dashpots behind it.
+//! The interfaces line by line (eq 6): the complex compliance D(ω) = k_J⁻¹ − k_E⁻¹, and the springs and
+//! dashpots behind it.
 //!
-//! With a translation t, a rotation r₂ at the near end and r₃ at the far end, D = [[t + r₂L², r₂L], [r₂L, r₂ + r₃]]: four complex elements for three
-//! unknowns. The surplus is reciprocity, D12 = D21. Least squares with the covariance of D's noise on a line use it; what they leave, D12 − D21 over its
-//! deviation, is a check of the line.
+//! With a translation t, a rotation r₂ at the near end and r₃ at the far end, D = [[t + r₂L², r₂L], [r₂L,
+//! r₂ + r₃]]: four complex elements for three unknowns. The surplus is reciprocity, D12 = D21. Least squares
+//! with the covariance of D's noise on a line use it; what they leave, D12 − D21 over its deviation, is a
+//! check of the line.
 
 mod left_over;
 mod line;
@@ -26,7 +28,8 @@ use num_complex::Complex64;
 pub struct LineInterface {
     /// What it adds to the beam's compliance.
     pub compliance: LineCompliance,
-    /// The spring and dashpot behind it; `None` where the compliance is within its noise, so that the line tells no stiffness.
+    /// The spring and dashpot behind it; `None` where the compliance is within its noise, so that the line
+    /// tells no stiffness.
     pub spring: Option<LineSpring>,
 }
 
@@ -65,7 +68,8 @@ impl InterfaceLine {
 pub enum InterfaceMask {
     /// The joint itself has no K and C there.
     Unsolved(MaskReason),
-    /// Noise may take the determinant of the matrix that D inverts (H41 but for factors, where the joint has no mass) to zero: the error is not of first order.
+    /// Noise may take the determinant of the matrix that D inverts (H41 but for factors, where the joint has
+    /// no mass) to zero: the error is not of first order.
     Noise,
 }
 
@@ -100,23 +104,27 @@ impl InterfaceSpectrum {
         counted(&self.masked)
     }
 
-    /// Solved lines on which the compliance is within its noise: of the translation, of the near and of the far rotation.
+    /// Solved lines on which the compliance is within its noise: of the translation, of the near and of the
+    /// far rotation.
     pub fn within_noise(&self) -> [usize; 3] {
         std::array::from_fn(|of| self.lines.iter().filter(|line| line.all()[of].spring.is_none()).count())
     }
 
-    /// χ² per degree of freedom of D12 = D21 over all solved lines; about 1 where reciprocity holds and variances are right. `None` without variances.
+    /// χ² per degree of freedom of D12 = D21 over all solved lines; about 1 where reciprocity holds and
+    /// variances are right. `None` without variances.
     pub fn asymmetry(&self) -> Option<f64> {
         let all: Option<Vec<f64>> = self.lines.iter().map(|line| line.asymmetry).collect();
         all.filter(|all| !all.is_empty()).map(|all| all.iter().sum::<f64>() / (2.0 * all.len() as f64))
     }
 }
 
-/// The interfaces by line of a joint whose beam has EI `bending_stiffness` (N·m²), from a spectrum by the exact relation.
+/// The interfaces by line of a joint whose beam has EI `bending_stiffness` (N·m²), from a spectrum by the
+/// exact relation.
 ///
 /// `mass` is the joint's own, kg, uniform over its length; its inertia at the joint's ends is taken out.
 ///
-/// `None` of a spectrum by eq (7), whose k is not on the ends' coordinates, and of blocks that do not rotate, which tell one element only.
+/// `None` of a spectrum by eq (7), whose k is not on the ends' coordinates, and of blocks that do not rotate,
+/// which tell one element only.
 pub fn interface_spectrum(
     spectrum: &JointSpectrum,
     bending_stiffness: f64,
@@ -155,8 +163,9 @@ impl InterfaceSpectrum {
         }
     }
 
-    /// The same with what is not known of the fixture: each of `moved` is the spectrum as it is read, the beam's EI (N·m²) and the joint's mass (kg), when one
-    /// quantity is off by a `share` of its standard deviation, all of them independent.
+    /// The same with what is not known of the fixture: each of `moved` is the spectrum as it is read, the
+    /// beam's EI (N·m²) and the joint's mass (kg), when one quantity is off by a `share` of its standard
+    /// deviation, all of them independent.
     pub(crate) fn with_tolerances(
         mut self,
         spectrum: &JointSpectrum,

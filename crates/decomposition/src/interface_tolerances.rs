@@ -7,11 +7,13 @@ use jointscope_fixture::Fixture;
 use jointscope_frf::fit_rigid_motion;
 use jointscope_spectra::FrfSet;
 
-/// The interfaces by line of the joint that `sides` were taken apart at, from its `spectrum` by the exact relation. `mass` is the joint's own with its
-/// standard deviation, kg; `exact` takes bare numbers of the fixture as exact.
+/// The interfaces by line of the joint that `sides` were taken apart at, from its `spectrum` by the exact
+/// relation. `mass` is the joint's own with its standard deviation, kg; `exact` takes bare numbers of the
+/// fixture as exact.
 ///
-/// Every quantity moves by a small share of its deviation and the lines are read anew, as for the averages. What the mass and the fixture's quantities have in
-/// common in the fit that told the mass is left out: each counts by itself.
+/// Every quantity moves by a small share of its deviation and the lines are read anew, as for the averages.
+/// What the mass and the fixture's quantities have in common in the fit that told the mass is left out: each
+/// counts by itself.
 ///
 /// `None` of a joint that is no beam, and where [`interface_spectrum`] is.
 pub(crate) fn interfaces_with_tolerances(

@@ -31,7 +31,8 @@ pub enum InterfaceStiffness {
         /// The stiffness it is above, with 97.5 % probability, N/m or N·m/rad.
         above: f64,
     },
-    /// The compliance is negative beyond its uncertainty: the joint is stiffer than the beam it is said to be.
+    /// The compliance is negative beyond its uncertainty: the joint is stiffer than the beam it is said to
+    /// be.
     StifferThanTheBeam,
 }
 
@@ -51,9 +52,10 @@ impl Compliance {
 
 /// The interfaces at both ends of the joint.
 ///
-/// In the matrix form D = k_J⁻¹ − k_E⁻¹ is the sum of the interfaces' compliances, each seen through its own R: at the far
-/// end diag(t₃, r₃), at the near end R diag(t₂, r₂) Rᵀ = [[t₂ + r₂L², r₂L], [r₂L, r₂]]. Its three elements give r₂, r₃
-/// and t₂ + t₃; the two translations act on one displacement and cannot be told apart.
+/// In the matrix form D = k_J⁻¹ − k_E⁻¹ is the sum of the interfaces' compliances, each seen through its own
+/// R: at the far end diag(t₃, r₃), at the near end R diag(t₂, r₂) Rᵀ = [[t₂ + r₂L², r₂L], [r₂L, r₂]]. Its
+/// three elements give r₂, r₃ and t₂ + t₃; the two translations act on one displacement and cannot be told
+/// apart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interfaces {
     /// Eq (6) element by element on the diagonal, both interfaces together: (1,1) in m/N, (2,2) in rad/(N·m).
@@ -66,7 +68,8 @@ pub struct Interfaces {
     pub far_rotation: Compliance,
 }
 
-/// (D11, D12, D22) of k_J⁻¹ − k_E⁻¹ and (1/k − 1/k_E) of the two diagonal elements; `None` for a singular k_J.
+/// (D11, D12, D22) of k_J⁻¹ − k_E⁻¹ and (1/k − 1/k_E) of the two diagonal elements; `None` for a singular
+/// k_J.
 pub(crate) fn left_over(joint: RealMatrix2, bending_stiffness: f64, length: f64) -> Option<[f64; 5]> {
     let all = joint.inverse()? - end_compliance(bending_stiffness, length);
     let beam = jointscope_beam::end_stiffness(bending_stiffness, length);
@@ -77,8 +80,8 @@ pub(crate) fn left_over(joint: RealMatrix2, bending_stiffness: f64, length: f64)
 /// Interfaces of a joint whose beam has EI `bending_stiffness` (N·m²) and `length` (m).
 ///
 /// `covariance` is that of (k11, k12, k22); `shifts` are changes of (D11, D12, D22) and of the two scalar
-/// compliances when a quantity of the fixture moves by one standard deviation, each independent of the others.
-/// `None` where the joint's stiffness is singular.
+/// compliances when a quantity of the fixture moves by one standard deviation, each independent of the
+/// others. `None` where the joint's stiffness is singular.
 pub fn interfaces(
     joint: RealMatrix2,
     covariance: [[f64; 3]; 3],
@@ -114,9 +117,11 @@ pub fn interfaces(
     })
 }
 
-/// Interfaces of a joint from all FRFs: `covariance` of (k11, k12, k22) holds the length's uncertainty, to which K is tied.
+/// Interfaces of a joint from all FRFs: `covariance` of (k11, k12, k22) holds the length's uncertainty, to
+/// which K is tied.
 ///
-/// `bending_stiffness` is the beam's EI with its standard deviation, N·m². `None` where the joint's stiffness is singular.
+/// `bending_stiffness` is the beam's EI with its standard deviation, N·m². `None` where the joint's stiffness
+/// is singular.
 pub(crate) fn interfaces_of_fit(
     joint: RealMatrix2,
     mut covariance: [[f64; 3]; 3],

@@ -1,9 +1,11 @@
 //! The joint from all FRFs at once, the fixture's quantities moving within their tolerances.
 //!
-//! [`maximum_likelihood`](crate::maximum_likelihood) fits k and c to the FRFs across the joint with the fixture taken as exact; what its tolerances do is added afterwards.
-//! But the other FRFs weigh the blocks, so to say: a mass that is 0.2 % off shifts every resonance. Here the maximum of the posterior is
-//! sought over k, c and every uncertain quantity of the fixture, each with its own standard deviation as prior, from all FRFs whose channels the fixture
-//! has; the fixture's quantities are then integrated out of the covariance. Each side is modelled as for the decomposition: with its own supports, masses and
+//! [`maximum_likelihood`](crate::maximum_likelihood) fits k and c to the FRFs across the joint with the
+//! fixture taken as exact; what its tolerances do is added afterwards. But the other FRFs weigh the blocks,
+//! so to say: a mass that is 0.2 % off shifts every resonance. Here the maximum of the posterior is sought
+//! over k, c and every uncertain quantity of the fixture, each with its own standard deviation as prior, from
+//! all FRFs whose channels the fixture has; the fixture's quantities are then integrated out of the
+//! covariance. Each side is modelled as for the decomposition: with its own supports, masses and
 //! mass-proportional damping, all other losses being the joint's.
 
 mod admissible;
@@ -60,7 +62,8 @@ pub struct JointFitOptions {
 
 /// Fits the joint that `sides` were taken apart at to every FRF whose channels the fixture has.
 ///
-/// It starts from the fit to the FRFs across the joint, if there is one, and from the fixture's own joint, `nominal`.
+/// It starts from the fit to the FRFs across the joint, if there is one, and from the fixture's own joint,
+/// `nominal`.
 ///
 /// # Errors
 /// No FRF that can be used, no start with finite FRFs, or FRFs that leave an element undetermined.
@@ -137,7 +140,8 @@ const NO_START: DecompositionError = DecompositionError::NoFit("no start gives f
 const UNDETERMINED: DecompositionError =
     DecompositionError::NoFit("the FRFs leave an element of k or c undetermined");
 
-/// The quantities that the FRFs depend on, the others, and the derivatives by the first ones at the first start, if they were taken there.
+/// The quantities that the FRFs depend on, the others, and the derivatives by the first ones at the first
+/// start, if they were taken there.
 ///
 /// `None` where no start gives finite FRFs.
 #[allow(clippy::type_complexity)]
@@ -166,8 +170,9 @@ fn that_matter(
     Some((matter, others, (place == 0).then_some(columns)))
 }
 
-/// The fit by the most probable law, from where laws were compared; `None` for the viscous law without mass, of which the first fit is. Under a law that the FRFs refute, what it leaves would
-/// be taken for what physics forbids.
+/// The fit by the most probable law, from where laws were compared; `None` for the viscous law without mass,
+/// of which the first fit is. Under a law that the FRFs refute, what it leaves would be taken for what
+/// physics forbids.
 fn by_its_law<'a>(
     problem: Problem<'a>,
     at: Vec<f64>,
@@ -204,7 +209,8 @@ fn lowest(problem: &Problem, starts: &[Vec<f64>], mut nearby: Option<Columns>) -
     best.filter(|best| best.point.objective.is_finite())
 }
 
-/// The fit of a joint with mass from that without and, if wanted, from afar: a mass left out bends the blocks, and on the way back lie other optima.
+/// The fit of a joint with mass from that without and, if wanted, from afar: a mass left out bends the
+/// blocks, and on the way back lie other optima.
 fn heavy(problem: &Problem, light: &Fitted, afar: Option<&Vec<f64>>) -> Option<Fitted> {
     let mut start = light.point.coordinates.clone();
     start.insert(problem.of_laws(), FIRST_MASS);

@@ -18,7 +18,8 @@ pub enum Use {
     Unusable,
 }
 
-/// An element on which the fit to the FRFs and the weighted mean over lines do not agree, for all their uncertainty.
+/// An element on which the fit to the FRFs and the weighted mean over lines do not agree, for all their
+/// uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Contradiction {
     /// The element of k that differs most.

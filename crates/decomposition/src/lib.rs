@@ -4,20 +4,23 @@
 //!
 //! H41 = β43 · (k⁻¹ + β33 + R α22 Rᵀ)⁻¹ · R α21, and k⁻¹ = R α21 H41⁻¹ β43 − β33 − R α22 Rᵀ
 //!
-//! with R = [[1, L],[0, 1]] across the joint's length L. Eq (7) of the paper leaves R out, which is exact only for a
-//! joint of zero length; [`Relation::Paper`] reproduces it, [`Relation::Exact`] closes the round trip.
+//! with R = [[1, L],[0, 1]] across the joint's length L. Eq (7) of the paper leaves R out, which is exact
+//! only for a joint of zero length; [`Relation::Paper`] reproduces it, [`Relation::Exact`] closes the round
+//! trip.
 //!
 //! * [`Relation`]: both relations for one line and for many;
-//! * [`Sides`]: the fixture taken apart at a joint, and the compliances α21, α22, β33, β43 of its sides with their
-//!   supports, masses and mass-proportional damping (eq 8–12);
+//! * [`Sides`]: the fixture taken apart at a joint, and the compliances α21, α22, β33, β43 of its sides with
+//!   their supports, masses and mass-proportional damping (eq 8–12);
 //! * [`CrossingFrfs`]: which FRFs of a recording tell the motion of one side due to loads on the other;
 //! * [`decompose`]: K(ω) and C(ω) with standard deviations, masked lines counted ([`JointSpectrum`]);
 //! * [`Analysis`]: all of it for one recording, with what the fixture's tolerances add;
 //! * [`Averages`]: means over a band, plain (eq 35, 42) and weighted;
 //! * [`maximum_likelihood`]: symmetric, passive k and c straight from the FRFs;
-//! * [`fit_joint`]: the same from every FRF, the fixture's quantities moving within their tolerances; tests of the joint, laws over frequency;
+//! * [`fit_joint`]: the same from every FRF, the fixture's quantities moving within their tolerances; tests
+//!   of the joint, laws over frequency;
 //! * [`fit_joints`]: several joints at once, in chains and in loops, from every FRF;
-//! * [`interfaces`]: what the joint's ends add to its beam (eq 6, scalar and matrix form); [`interface_spectrum`]: the same line by line.
+//! * [`interfaces`]: what the joint's ends add to its beam (eq 6, scalar and matrix form);
+//!   [`interface_spectrum`]: the same line by line.
 //!
 //! ```
 //! use jointscope_decomposition::Relation;

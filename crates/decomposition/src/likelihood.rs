@@ -30,14 +30,14 @@ pub struct LikelihoodFit {
     pub stiffness_std: RealMatrix2,
     /// Standard deviations of C.
     pub damping_std: RealMatrix2,
-    /// Covariance of (k11, k12, k22, c11, c12, c22). As the deviations, it is widened by χ² per degree of freedom
-    /// where that is above one.
+    /// Covariance of (k11, k12, k22, c11, c12, c22). As the deviations, it is widened by χ² per degree of
+    /// freedom where that is above one.
     pub covariance: [[f64; 6]; 6],
     /// χ² per degree of freedom: 1 where a constant joint explains the FRFs within their noise.
     pub chi2_per_dof: f64,
-    /// Covariance of (k11, k12, k22, c11, c12, c22) from how far they move when one of eight blocks of lines is left
-    /// out (a jackknife): what a joint that is not quite constant, or a fixture that is not quite right, does to them.
-    /// Zero where χ² gives no reason to look.
+    /// Covariance of (k11, k12, k22, c11, c12, c22) from how far they move when one of eight blocks of lines
+    /// is left out (a jackknife): what a joint that is not quite constant, or a fixture that is not quite
+    /// right, does to them. Zero where χ² gives no reason to look.
     pub model_covariance: [[f64; 6]; 6],
     /// Whether c would give out energy if it were free, and was held to c = v vᵀ.
     pub is_on_the_boundary: bool,
@@ -45,16 +45,19 @@ pub struct LikelihoodFit {
     pub values: usize,
 }
 
-/// Fits a constant k + sc (s = iω, or δ + iω under an exponential window) to the FRFs across the joint on the lines in `band` (all usable ones without).
+/// Fits a constant k + sc (s = iω, or δ + iω under an exponential window) to the FRFs across the joint on the
+/// lines in `band` (all usable ones without).
 ///
-/// With X = (k⁻¹ + T)⁻¹, T = β33 + R α22 Rᵀ, an FRF is rational in k, and resonances make a trap of every poor start.
-/// But (I − X T) k = X is linear: solved with the measured X and the last round's (I + T k)⁻¹ as weight, it leads
-/// close to the optimum within a few rounds, from the spectrum's medians or from `nominal`.
-/// Levenberg–Marquardt with analytic derivatives goes on from there and from the starts themselves, until one explains the FRFs; the lowest χ² is kept. Where c comes out giving off energy, it is fitted
-/// again as c = v vᵀ, the boundary of what is passive.
+/// With X = (k⁻¹ + T)⁻¹, T = β33 + R α22 Rᵀ, an FRF is rational in k, and resonances make a trap of every
+/// poor start. But (I − X T) k = X is linear: solved with the measured X and the last round's (I + T k)⁻¹ as
+/// weight, it leads close to the optimum within a few rounds, from the spectrum's medians or from `nominal`.
+/// Levenberg–Marquardt with analytic derivatives goes on from there and from the starts themselves, until one
+/// explains the FRFs; the lowest χ² is kept. Where c comes out giving off energy, it is fitted again as c = v
+/// vᵀ, the boundary of what is passive.
 ///
-/// The fit weighs every FRF by the variance it carries; FRFs without variances weigh alike. Where χ² says that a constant joint
-/// does not explain the FRFs, a jackknife over the band says what that leaves uncertain.
+/// The fit weighs every FRF by the variance it carries; FRFs without variances weigh alike. Where χ² says
+/// that a constant joint does not explain the FRFs, a jackknife over the band says what that leaves
+/// uncertain.
 ///
 /// # Errors
 /// No usable line in the band, or FRFs that leave an element of k or c undetermined.

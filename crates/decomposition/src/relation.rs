@@ -38,7 +38,8 @@ impl Relation {
         }
     }
 
-    /// The joint's dynamic stiffness K + sC at one line, s = iω or, with all its matrices, δ + iω; `None` where a matrix is singular.
+    /// The joint's dynamic stiffness K + sC at one line, s = iω or, with all its matrices, δ + iω; `None`
+    /// where a matrix is singular.
     pub fn decompose(
         self,
         h41: ComplexMatrix2,
@@ -76,7 +77,8 @@ impl Relation {
         }
     }
 
-    // Inlined by force: as a call, its five matrices would be copied for every line, which costs as much as the formula.
+    // Inlined by force: as a call, its five matrices would be copied for every line, which costs as much as
+    // the formula.
     #[inline(always)]
     pub(crate) fn decompose_unchecked(
         self,
@@ -128,8 +130,8 @@ fn on_lines(
 
 /// The inverse, not finite where the matrix is singular.
 ///
-/// A determinant is squared here, which receptances below 1e-77 m/N would not survive; in exchange there is one
-/// division instead of the two in a row of [`Matrix2::inverse_unchecked`].
+/// A determinant is squared here, which receptances below 1e-77 m/N would not survive; in exchange there is
+/// one division instead of the two in a row of [`Matrix2::inverse_unchecked`].
 #[inline(always)]
 fn inverse(m: ComplexMatrix2) -> ComplexMatrix2 {
     let [[a, b], [c, d]] = m.0;

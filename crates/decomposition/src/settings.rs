@@ -1,21 +1,26 @@
-//! Every tuned number of a decomposition, with the reason for it where there is one to state, by the step that it decides.
+//! Every tuned number of a decomposition, with the reason for it where there is one to state, by the step
+//! that it decides.
 //!
-//! Steps of differences inside a law and the grid of a quadrature, which decide nothing, stand where they are used; so do sizes of arrays.
+//! Steps of differences inside a law and the grid of a quadrature, which decide nothing, stand where they are
+//! used; so do sizes of arrays.
 
 /// Line by line.
 pub(crate) mod spectra {
     /// H41 beyond this balanced condition number counts as singular: its inverse is rounding.
     pub(crate) const SINGULAR_CONDITION: f64 = 1e12;
-    /// Share of noise in an element above which its interval is only indicative: the propagation is of first order.
+    /// Share of noise in an element above which its interval is only indicative: the propagation is of first
+    /// order.
     pub(crate) const INDICATIVE_NOISE: f64 = 0.3;
 }
 
 /// Interfaces by line.
 pub(crate) mod interfaces {
-    /// Share of noise in the determinant of the matrix that a line inverts above which it tells nothing: errors of the inverse are of first order below.
+    /// Share of noise in the determinant of the matrix that a line inverts above which it tells nothing:
+    /// errors of the inverse are of first order below.
     pub(crate) const HIDDEN_BY_NOISE: f64 = 0.1;
-    /// Standard deviation of a compliance's parts, as a share of the real part that the lines beside it show, above which a line tells no stiffness: at a fifth
-    /// first-order 95 % intervals of one over a compliance cover in 93.4 %, at a tenth in 94.9 %.
+    /// Standard deviation of a compliance's parts, as a share of the real part that the lines beside it show,
+    /// above which a line tells no stiffness: at a fifth first-order 95 % intervals of one over a compliance
+    /// cover in 93.4 %, at a tenth in 94.9 %.
     pub(crate) const STATED_SHARE: f64 = 0.2;
     /// Lines on either side that are taken as beside it.
     pub(crate) const NEIGHBOURS: usize = 25;
@@ -41,8 +46,8 @@ pub(crate) mod estimates {
 pub(crate) mod noise {
     /// Relative standard deviation of a value without a variance.
     pub(crate) const UNKNOWN_NOISE: f64 = 1e-3;
-    /// χ² per degree of freedom up to which a joint counts as explaining the FRFs, so that noise is taken as it is stated: variances from few averages
-    /// are themselves known to a few per cent.
+    /// χ² per degree of freedom up to which a joint counts as explaining the FRFs, so that noise is taken as
+    /// it is stated: variances from few averages are themselves known to a few per cent.
     pub(crate) const EXPLAINED: f64 = 1.2;
     /// Blocks of neighbouring lines that the jackknife leaves out in turn.
     pub(crate) const JACKKNIFE_BLOCKS: usize = 8;
@@ -54,7 +59,8 @@ pub(crate) mod differences {
     pub(crate) const TOLERANCE_STEP: f64 = 1e-3;
     /// Steps of differences of the gradient, in standard deviations of each parameter.
     pub(crate) const GRADIENT_STEP: f64 = 1e-3;
-    /// Step of forward differences by a quantity, in standard deviations: resonances bend within a tenth of one.
+    /// Step of forward differences by a quantity, in standard deviations: resonances bend within a tenth of
+    /// one.
     pub(crate) const QUANTITY_STEP: f64 = 1e-3;
 }
 
@@ -81,7 +87,8 @@ pub(crate) mod starts {
     pub(crate) const DOUBTFUL_FIT: f64 = 1.3;
     /// Damping of a start without any, as a loss factor.
     pub(crate) const START_LOSS: f64 = 3e-3;
-    /// Weighted squared change by one standard deviation of a quantity below which the FRFs do not depend on it.
+    /// Weighted squared change by one standard deviation of a quantity below which the FRFs do not depend on
+    /// it.
     pub(crate) const NO_DEPENDENCE: f64 = 1e-9;
     /// Mean square departure of the quantities, in standard deviations, above which another start is tried.
     pub(crate) const PLAUSIBLE_DEPARTURE: f64 = 4.0;
@@ -93,7 +100,8 @@ pub(crate) mod starts {
 pub(crate) mod fit {
     /// Steps of a fit at the most.
     pub(crate) const MOST_STEPS: usize = 80;
-    /// Share of a promised decrease below which a step follows a curved valley: resonances tie the joint to the blocks along one.
+    /// Share of a promised decrease below which a step follows a curved valley: resonances tie the joint to
+    /// the blocks along one.
     pub(crate) const CURVED_VALLEY: f64 = 0.5;
     /// Change of χ² below which a fit has converged: a thousandth of what one standard deviation makes.
     pub(crate) const CONVERGED: f64 = 1e-3;
@@ -103,8 +111,9 @@ pub(crate) mod fit {
     pub(crate) const REUSE: f64 = 0.02;
     /// Shares of the signal that count as noise in the stages of a fit from afar.
     pub(crate) const SIGNAL_AS_NOISE: [f64; 4] = [1.0, 0.3, 0.06, 0.01];
-    /// Decrease of χ² that an optimum may promise by derivatives taken there: as much as one standard deviation makes. Of a joint of 1 % structural damping the fit of its own law promised 9 where
-    /// it ended, and was 3.4 standard deviations off in k22.
+    /// Decrease of χ² that an optimum may promise by derivatives taken there: as much as one standard
+    /// deviation makes. Of a joint of 1 % structural damping the fit of its own law promised 9 where it
+    /// ended, and was 3.4 standard deviations off in k22.
     pub(crate) const CREEPS: f64 = 1.0;
     /// Times that an optimum is gone on from with derivatives taken there.
     pub(crate) const MOST_RESUMPTIONS: usize = 3;
@@ -130,7 +139,8 @@ pub(crate) mod priors {
     pub(crate) const LOSS_RANGE: [f64; 2] = [1e-4, 0.3];
     /// Of the change of stiffness up to the middle of the band, as a share.
     pub(crate) const CHANGE_RANGE: [f64; 2] = [3e-4, 0.3];
-    /// Of the mass in units of its coordinate, that is of a fiftieth of the lighter side's: 0.06 to 5 % of that side.
+    /// Of the mass in units of its coordinate, that is of a fiftieth of the lighter side's: 0.06 to 5 % of
+    /// that side.
     pub(crate) const MASS_RANGE: [f64; 2] = [0.03, 2.5];
     /// Widths tried of each.
     pub(crate) const WIDTHS: usize = 9;
@@ -138,30 +148,36 @@ pub(crate) mod priors {
 
 /// Symmetric optima and joints that physics allows.
 pub(crate) mod symmetry {
-    /// Gain by freedom of symmetry from which it is asked whether the symmetric optimum is one: one time in twenty by chance.
+    /// Gain by freedom of symmetry from which it is asked whether the symmetric optimum is one: one time in
+    /// twenty by chance.
     pub(crate) const LARGE_GAIN: f64 = 5.99;
     /// Decrease by which a symmetric optimum is another than the one before.
     pub(crate) const ANOTHER_OPTIMUM: f64 = 0.1;
     /// Times that it is asked.
     pub(crate) const MOST_ROUNDS: usize = 4;
-    /// Rounds of Gauss and Newton's method to the nearest joint on the boundary, each as long as it comes nearer.
+    /// Rounds of Gauss and Newton's method to the nearest joint on the boundary, each as long as it comes
+    /// nearer.
     pub(crate) const PROJECTION_ROUNDS: usize = 60;
 }
 
 /// Laws over frequency, compared.
 pub(crate) mod laws {
-    /// Probability from which a law, or the mass of a joint, is said to hold, rather than to be the most probable one.
+    /// Probability from which a law, or the mass of a joint, is said to hold, rather than to be the most
+    /// probable one.
     pub(crate) const CERTAIN: f64 = 0.95;
-    /// Probability from which it is kept what FRFs tell under a law: that of the joint's own law is seldom lower.
+    /// Probability from which it is kept what FRFs tell under a law: that of the joint's own law is seldom
+    /// lower.
     pub(crate) const KEPT_PROBABILITY: f64 = 1e-3;
     /// Most steps of a law's fit: one that needs more is far from the FRFs.
     pub(crate) const MOST_STEPS: usize = 40;
-    /// Steps of a law that is [hopeless](HOPELESS), and of the one without damping, whose resonances are infinite: it is near at once or not at all.
+    /// Steps of a law that is [hopeless](HOPELESS), and of the one without damping, whose resonances are
+    /// infinite: it is near at once or not at all.
     pub(crate) const FEW_STEPS: usize = 10;
     /// A law is hopeless that promises a χ² larger by so much than the best one.
     pub(crate) const HOPELESS: f64 = 1000.0;
-    /// Laws without mass whose logarithm of the evidence is as near to that of the most probable one are fitted until they have converged and tried with mass: what a mass explains takes
-    /// laws without it far from the FRFs, the true one too.
+    /// Laws without mass whose logarithm of the evidence is as near to that of the most probable one are
+    /// fitted until they have converged and tried with mass: what a mass explains takes laws without it far
+    /// from the FRFs, the true one too.
     pub(crate) const NEAR_LOG_EVIDENCE: f64 = 300.0;
     /// All laws are tried with mass if χ² of one of them falls as much by it.
     pub(crate) const MASS_GAIN: f64 = 10.0;

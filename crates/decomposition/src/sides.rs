@@ -58,8 +58,8 @@ pub struct Sides {
 impl Sides {
     /// Takes the fixture apart at the joint named, or at its only one.
     ///
-    /// Effects of the fixture's `physics` that sit on a side stay with it; those of the joint itself are part of
-    /// what is to be found. An `exponential_window` says at which s = decay + iω the FRFs were read.
+    /// Effects of the fixture's `physics` that sit on a side stay with it; those of the joint itself are part
+    /// of what is to be found. An `exponential_window` says at which s = decay + iω the FRFs were read.
     ///
     /// # Errors
     /// See [`SidesError`].
@@ -106,7 +106,8 @@ impl Sides {
         self.fixture.joint_length(self.joint())
     }
 
-    /// Decay δ of the exponential window over force and responses, 1/s; 0 without one. FRFs, sides and joint hold at s = δ + iω.
+    /// Decay δ of the exponential window over force and responses, 1/s; 0 without one. FRFs, sides and joint
+    /// hold at s = δ + iω.
     pub fn decay(&self) -> f64 {
         self.decay
     }
@@ -116,13 +117,14 @@ impl Sides {
         Complex64::new(self.decay, omega)
     }
 
-    /// −ω²/s², by which a receptance is multiplied that was made of an accelerance by −1/ω²: under a window an accelerance is s²H(s).
+    /// −ω²/s², by which a receptance is multiplied that was made of an accelerance by −1/ω²: under a window
+    /// an accelerance is s²H(s).
     pub(crate) fn integrated_at_s(&self, omega: f64) -> Complex64 {
         if self.decay == 0.0 { Complex64::ONE } else { -(omega * omega) / self.s(omega).powi(2) }
     }
 
-    /// Compliances of the sides on `lines`, all above 0 Hz (eq 8–12), at s = δ + iω. `loaded` and `responding` are (body index
-    /// in the whole fixture, abscissa) of the reference points on sides α and β.
+    /// Compliances of the sides on `lines`, all above 0 Hz (eq 8–12), at s = δ + iω. `loaded` and
+    /// `responding` are (body index in the whole fixture, abscissa) of the reference points on sides α and β.
     ///
     /// A line at 0 Hz has no compliance; its matrices are zero.
     ///

@@ -16,7 +16,8 @@ pub struct JointLine {
     pub line: usize,
     /// Its frequency, Hz.
     pub frequency: f64,
-    /// K = Re of the dynamic stiffness K + sC (eq 33), under an exponential window less δC: N/m, N/rad; N·m/m, N·m/rad.
+    /// K = Re of the dynamic stiffness K + sC (eq 33), under an exponential window less δC: N/m, N/rad;
+    /// N·m/m, N·m/rad.
     pub stiffness: RealMatrix2,
     /// C = Im/ω (eq 38): N·s/m and so on.
     pub damping: RealMatrix2,
@@ -26,7 +27,8 @@ pub struct JointLine {
     /// Standard deviation of each element of C.
     #[serde(skip)]
     pub damping_std: Option<RealMatrix2>,
-    /// By how much relative errors of the FRFs and compliances are multiplied in the worst element of K, at the most.
+    /// By how much relative errors of the FRFs and compliances are multiplied in the worst element of K, at
+    /// the most.
     pub condition: f64,
 }
 
@@ -59,7 +61,8 @@ pub struct JointSpectrum {
     pub relation: Relation,
     /// Receptances of side β's block due to loads on side α's, at s.
     pub h41: BlockFrf,
-    /// Decay δ of the exponential window over force and responses, 1/s; 0 without one. Everything holds at s = δ + iω.
+    /// Decay δ of the exponential window over force and responses, 1/s; 0 without one. Everything holds at
+    /// s = δ + iω.
     pub decay: f64,
     /// Compliances of the sides.
     pub sides: Compliances,
@@ -190,7 +193,8 @@ pub(crate) fn scalar_stiffness(
     stiffness
 }
 
-/// The dynamic stiffness that a spectrum's relation makes of another H41 and other sides, on one line; not finite where a matrix is singular.
+/// The dynamic stiffness that a spectrum's relation makes of another H41 and other sides, on one line; not
+/// finite where a matrix is singular.
 pub(crate) fn dynamic_stiffness_on(
     spectrum: &JointSpectrum,
     h41: ComplexMatrix2,

@@ -1,7 +1,8 @@
 //! What the fixture's own uncertainty does to the joint found, to first order.
 //!
-//! A quantity moves by a small share of its standard deviation, the sides and the FRFs across are read anew, and the difference is scaled up to the whole
-//! deviation. Means over lines are taken again; the fit is not repeated, its optimum follows in closed form ([`Optimum`]).
+//! A quantity moves by a small share of its standard deviation, the sides and the FRFs across are read anew,
+//! and the difference is scaled up to the whole deviation. Means over lines are taken again; the fit is not
+//! repeated, its optimum follows in closed form ([`Optimum`]).
 
 use crate::interfaces::left_over;
 use crate::likelihood::Optimum;
@@ -14,7 +15,8 @@ use jointscope_frf::fit_rigid_motion;
 use jointscope_linalg::{ComplexMatrix2, RealMatrix2};
 use jointscope_spectra::FrfSet;
 
-/// By how much the joint found changes when one quantity of the fixture moves by its standard deviation, to first order.
+/// By how much the joint found changes when one quantity of the fixture moves by its standard deviation, to
+/// first order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ToleranceShare {
     /// Path of the quantity in the fixture file.
@@ -49,13 +51,16 @@ pub(crate) struct NominalResult<'a> {
     pub spectrum: &'a JointSpectrum,
     /// The band averaged over.
     pub band: Band,
-    /// The fit with the spectrum of the exact relation that it began with and the band fitted, all lines without.
+    /// The fit with the spectrum of the exact relation that it began with and the band fitted, all lines
+    /// without.
     pub fit: Option<(&'a LikelihoodFit, &'a JointSpectrum, Option<Band>)>,
 }
 
-/// What every quantity of the fixture that has a standard deviation does to the joint found. `exact` takes bare numbers of the fixture as exact.
+/// What every quantity of the fixture that has a standard deviation does to the joint found. `exact` takes
+/// bare numbers of the fixture as exact.
 ///
-/// A quantity whose change cannot be followed (sides without a finite response, a fit that leaves a combination undetermined) is named among the lost ones.
+/// A quantity whose change cannot be followed (sides without a finite response, a fit that leaves a
+/// combination undetermined) is named among the lost ones.
 ///
 /// # Errors
 /// A recording that lacks FRFs.
@@ -108,7 +113,8 @@ struct Stated<'a> {
 }
 
 impl Stated<'_> {
-    /// The share of a quantity of which `moved` gives the fixture with it off by a number of standard deviations; its path and deviation are left open.
+    /// The share of a quantity of which `moved` gives the fixture with it off by a number of standard
+    /// deviations; its path and deviation are left open.
     fn share(&self, moved: &dyn Fn(f64) -> Fixture) -> Option<ToleranceShare> {
         let (plain, likelihood) = self.change(&moved(TOLERANCE_STEP))?;
         let compliance = likelihood.zip(self.of.fit).and_then(|((k, _), (fit, ..))| {
@@ -118,7 +124,8 @@ impl Stated<'_> {
         Some(ToleranceShare { path: String::new(), std: 0.0, plain, likelihood, compliance })
     }
 
-    /// Changes of the plain averages and of the fit by a standard deviation, from a fixture in which a quantity is moved by a small share of it.
+    /// Changes of the plain averages and of the fit by a standard deviation, from a fixture in which a
+    /// quantity is moved by a small share of it.
     fn change(&self, fixture: &Fixture) -> Option<(Matrices, Option<Matrices>)> {
         let of = self.of;
         let sides = Sides::of(fixture, Some(&of.sides.joint().name)).ok()?;
@@ -160,7 +167,8 @@ fn mean(of: &NominalResult, sides: &Sides, h41: &[ComplexMatrix2], compliances: 
     (k.scale(1.0 / count), c.scale(1.0 / count))
 }
 
-/// What the beam of a fixture does not account for in a joint of this stiffness; nothing where the joint is no beam.
+/// What the beam of a fixture does not account for in a joint of this stiffness; nothing where the joint is
+/// no beam.
 fn of_interfaces(fixture: &Fixture, sides: &Sides, stiffness: RealMatrix2) -> Option<[f64; 5]> {
     let joint = &fixture.joints()[sides.joint_index()];
     left_over(stiffness, joint.law.bending_stiffness()?, fixture.joint_length(joint))

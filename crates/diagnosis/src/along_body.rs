@@ -31,7 +31,8 @@ pub(crate) struct Abscissae {
     pub at: usize,
     /// Where a search of the name sets out, ascending.
     pub places: Vec<f64>,
-    /// Least distance of two places: what comes to rest nearer than halfway to where the next search set out is at the same one.
+    /// Least distance of two places: what comes to rest nearer than halfway to where the next search set out
+    /// is at the same one.
     apart: f64,
 }
 

@@ -18,8 +18,8 @@ pub struct Alternative {
     pub fit: Fit,
 }
 
-/// The hypotheses for effect `index` of the repaired fit, the most probable first, each fitted in the company of the other
-/// effects.
+/// The hypotheses for effect `index` of the repaired fit, the most probable first, each fitted in the company
+/// of the other effects.
 pub(crate) fn alternatives(fitter: &Fitter, search: &Search, index: usize) -> Vec<Alternative> {
     fitter.watch.stage("asking what else would explain a finding");
     let repaired = &search.repaired;
@@ -55,7 +55,8 @@ pub(crate) fn alternatives(fitter: &Fitter, search: &Search, index: usize) -> Ve
     all
 }
 
-/// Where the quantities stand that make up for nearly all of an effect, if they do, with the noise of this variance `inflation`.
+/// Where the quantities stand that make up for nearly all of an effect, if they do, with the noise of this
+/// variance `inflation`.
 fn imitated(fitter: &Fitter, search: &Search, without: &Hypothesis, inflation: f64) -> Option<Hypothesis> {
     let small = search.repaired.objective + fitter.settings.ranking.small * inflation;
     match without.effect_count() {

@@ -4,7 +4,8 @@ use crate::settings::statements::baseline::MORE_THAN_NOISE;
 use crate::{Fit, Observation};
 use serde::Serialize;
 
-/// A recording of the structure as it was known to be right, and what the fixture calibrated on it makes of it.
+/// A recording of the structure as it was known to be right, and what the fixture calibrated on it makes of
+/// it.
 #[derive(Debug, Clone)]
 pub struct Baseline {
     /// FRFs and noise of that recording.

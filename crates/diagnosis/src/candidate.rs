@@ -3,7 +3,8 @@
 use crate::settings::effects::bounds::{LEAST_FACTOR, MOST_FACTOR};
 use jointscope_fixture::{Dof, Effect, EffectKind, Motion, ParameterRange, Place, SizeLaw};
 
-/// One kind of effect at one place (and dof): a name that a diagnosis can give, with starts for its parameters.
+/// One kind of effect at one place (and dof): a name that a diagnosis can give, with starts for its
+/// parameters.
 #[derive(Debug, Clone)]
 pub struct Candidate {
     /// The kind.
@@ -14,7 +15,8 @@ pub struct Candidate {
     pub dof: Option<Dof>,
     /// Parameters to start from: sizes, signs, abscissae, frequencies.
     pub starts: Vec<Vec<f64>>,
-    /// Parameters of effects so small that what they do is proportional to their size, one for each abscissa, frequency or time.
+    /// Parameters of effects so small that what they do is proportional to their size, one for each abscissa,
+    /// frequency or time.
     pub directions: Vec<Vec<f64>>,
 }
 
@@ -38,7 +40,8 @@ impl Candidate {
     }
 }
 
-/// The effect made `times` as large in what it does to the FRFs to first order; `None` where none of its kind has that sign.
+/// The effect made `times` as large in what it does to the FRFs to first order; `None` where none of its kind
+/// has that sign.
 pub(crate) fn scaled(effect: &Effect, times: f64) -> Option<Effect> {
     let spec = effect.kind.spec();
     let (size, leading) = (spec.size, &spec.parameters[spec.size.parameter]);
@@ -77,7 +80,8 @@ pub(crate) fn candidate(
     Candidate { kind, place, dof, starts, directions }
 }
 
-/// The start's shape (abscissa, frequency, time) with a size that depends on its kind alone, too small to bend anything.
+/// The start's shape (abscissa, frequency, time) with a size that depends on its kind alone, too small to
+/// bend anything.
 fn made_small(kind: EffectKind, start: &[f64], all: &[Vec<f64>]) -> Vec<f64> {
     let size = kind.spec().size;
     let largest = all.iter().map(|start| start[size.parameter]).fold(0.0, f64::max);

@@ -1,7 +1,8 @@
 //! Lines that contradict all others, whatever the structure: mains hum, clipped peaks, a tone from elsewhere.
 //!
-//! Any linear structure's FRFs are sums over modes with common poles. Where a free fit of such a sum leaves next to nothing but on few lines, and those are off in the
-//! FRFs at large, it is these lines that are wrong, and no model has to explain them.
+//! Any linear structure's FRFs are sums over modes with common poles. Where a free fit of such a sum leaves
+//! next to nothing but on few lines, and those are off in the FRFs at large, it is these lines that are
+//! wrong, and no model has to explain them.
 
 use crate::modal::recorded;
 use crate::settings::lines::contradiction::{

@@ -6,7 +6,8 @@ use crate::{Fit, Hypothesis, Linearisation, Observation, Watch};
 use jointscope_inference::Covariance;
 
 impl Fit {
-    /// Fits from the hypothesis as it stands with the default settings; from afar (`global`) a share of the signal counts as noise first.
+    /// Fits from the hypothesis as it stands with the default settings; from afar (`global`) a share of the
+    /// signal counts as noise first.
     ///
     /// `None` where the start itself predicts no finite FRFs.
     pub fn of(start: &Hypothesis, observation: &Observation, global: bool) -> Option<Self> {
@@ -22,7 +23,8 @@ impl Fit {
 }
 
 impl Linearisation {
-    /// Central differences about a hypothesis by steps so small that every digit counts which rounding leaves, of every coordinate.
+    /// Central differences about a hypothesis by steps so small that every digit counts which rounding
+    /// leaves, of every coordinate.
     pub fn of(at: &Hypothesis, observation: &Observation) -> Self {
         let fitter = Fitter { observation, settings: &Settings::default(), watch: Watch::default() };
         fitter.linearised_exactly(at)

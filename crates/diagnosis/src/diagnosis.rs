@@ -31,8 +31,9 @@ pub struct Diagnosis {
     pub observation: Observation,
     /// The three models: the file's, refitted within tolerances, with the effects found.
     pub search: Search,
-    /// The refitted and the repaired model where quantities are as probable as can be: what is said of them. By modes the models of [`Diagnosis::search`], which are to predict, follow the
-    /// recording more closely than that.
+    /// The refitted and the repaired model where quantities are as probable as can be: what is said of them.
+    /// By modes the models of [`Diagnosis::search`], which are to predict, follow the recording more closely
+    /// than that.
     pub stated: [Hypothesis; 2],
     /// χ² per degree of freedom of the refitted fixture, and the probability of one as large by chance.
     pub refitted: (f64, f64),
@@ -40,16 +41,18 @@ pub struct Diagnosis {
     pub mismatch: Vec<FrfMismatch>,
     /// What was found, the strongest first.
     pub findings: Vec<Finding>,
-    /// What each place leaves unexplained of the refitted fixture's mismatch with one free scalar a line, the best place first. Empty where
-    /// there is no mismatch.
+    /// What each place leaves unexplained of the refitted fixture's mismatch with one free scalar a line, the
+    /// best place first. Empty where there is no mismatch.
     pub locations: Vec<Location>,
     /// The judgement on what no fit saw.
     pub held_out: Option<HeldOut>,
     /// Correlation of neighbouring lines' residuals of the repaired model: near zero if they are white.
     pub residual_correlation: f64,
-    /// Error of the refitted and of the repaired model, where it is larger than the noise and decides; `None` where the noise does.
+    /// Error of the refitted and of the repaired model, where it is larger than the noise and decides; `None`
+    /// where the noise does.
     pub model_error: Option<[ModelError; 2]>,
-    /// Error of the model on the baseline, where there was one; then [`Diagnosis::model_error`] is of the change since.
+    /// Error of the model on the baseline, where there was one; then [`Diagnosis::model_error`] is of the
+    /// change since.
     pub baseline_error: Option<ModelError>,
     /// The state that a change is told from, where there was a baseline.
     pub baseline: Option<Baseline>,
@@ -59,13 +62,17 @@ pub struct Diagnosis {
     pub stopped: Vec<&'static str>,
     /// Bands, Hz, of lines that contradict all others whatever the structure, and were left out.
     pub contradictory: Vec<(f64, f64)>,
-    /// The largest share by which FRFs fell short because of noise of the force, where that explains the recording better: the observation is without it.
+    /// The largest share by which FRFs fell short because of noise of the force, where that explains the
+    /// recording better: the observation is without it.
     pub falls_short: Option<f64>,
-    /// What no modes explain of the recording, as a share of its FRFs, where it had to count as noise for anything to be explained: the observation has so much.
+    /// What no modes explain of the recording, as a share of its FRFs, where it had to count as noise for
+    /// anything to be explained: the observation has so much.
     pub beside_modes: Option<f64>,
-    /// How the structure changed from reference to reference, where it did: the diagnosis is of the references that agree.
+    /// How the structure changed from reference to reference, where it did: the diagnosis is of the
+    /// references that agree.
     pub drift: Option<TestDrift>,
-    /// Effects that were tried by themselves where the model's error decides or nothing explains the recording, by what they make of its modes: the most probable first.
+    /// Effects that were tried by themselves where the model's error decides or nothing explains the
+    /// recording, by what they make of its modes: the most probable first.
     pub tried: Vec<Tried>,
 }
 
@@ -183,8 +190,8 @@ impl Diagnosis {
         Some(drifted.attributed(&model.ok()?, explains))
     }
 
-    /// The same, or, where something was found or left and FRFs that fall short by noise of the force explain the recording better, what is `diagnosed` of the FRFs without
-    /// that.
+    /// The same, or, where something was found or left and FRFs that fall short by noise of the force explain
+    /// the recording better, what is `diagnosed` of the FRFs without that.
     fn without_shortfall(
         self,
         settings: &Settings,
@@ -197,13 +204,15 @@ impl Diagnosis {
         let Search { refitted, repaired, .. } = &self.search;
         let found = (repaired.hypothesis.effect_count() > 0).then_some(repaired);
         let cost = |of: &Self| cost(&fitter, &of.search.repaired, 1.0);
-        // Beside what was found second: a filter or a mass takes up what falls short, and leaves too little of it.
+        // Beside what was found second: a filter or a mass takes up what falls short, and leaves too little
+        // of it.
         for fit in [Some(refitted), found].into_iter().flatten() {
             let short = Shortfall::beside(&fitter, fit).filter(|short| short.explains(&fitter));
             let Some(short) = short else { continue };
             let Some(corrected) = short.corrected(&self.observation) else { continue };
             let other = diagnosed(corrected)?;
-            // What needs nothing is as good as what falls short leaves by itself, whatever models are in error by.
+            // What needs nothing is as good as what falls short leaves by itself, whatever models are in
+            // error by.
             let left = if other.verdict == Verdict::Consistent { short.left() } else { f64::INFINITY };
             if cost(&other).min(left) + settings.selection.parameter_penalty < cost(&self) {
                 return Ok(Diagnosis { falls_short: Some(short.largest), ..other });
@@ -212,8 +221,9 @@ impl Diagnosis {
         Ok(self)
     }
 
-    /// The same, or, where nothing explains the whole recording and no poles do either, what is `diagnosed` in part with that as its noise: leakage and filters leave what no structure has in
-    /// its FRFs, and no name is to be held against it.
+    /// The same, or, where nothing explains the whole recording and no poles do either, what is `diagnosed`
+    /// in part with that as its noise: leakage and filters leave what no structure has in its FRFs, and no
+    /// name is to be held against it.
     fn beside_modes(
         self,
         settings: &Settings,
@@ -273,7 +283,8 @@ impl Diagnosis {
     }
 }
 
-/// The fixture, each record's gain moving within what is stated of all of them, on lines and by modes; of a baseline and what follows it they are not the same.
+/// The fixture, each record's gain moving within what is stated of all of them, on lines and by modes; of a
+/// baseline and what follows it they are not the same.
 fn with_gains_of_records(fixture: &Fixture, frfs: &FrfSet, options: &DiagnosisOptions) -> Fixture {
     if options.baseline.is_some() {
         return fixture.clone();

@@ -1,6 +1,7 @@
 //! Where else along a beam what was found by lines explains them as well.
 //!
-//! A beam that is alike at both ends has places that mirror each other: FRFs between mirrored points are the same whichever of the two carries a mass.
+//! A beam that is alike at both ends has places that mirror each other: FRFs between mirrored points are the
+//! same whichever of the two carries a mass.
 
 use crate::Hypothesis;
 use crate::along_body::{Abscissae, is_on_beam, place_of_last};
@@ -10,7 +11,8 @@ use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::search::Search;
 
-/// Effect `index` of the repaired fit at other places of its beam, where these explain the lines nearly as well beside the rest: the most probable of each place first.
+/// Effect `index` of the repaired fit at other places of its beam, where these explain the lines nearly as
+/// well beside the rest: the most probable of each place first.
 pub(crate) fn elsewhere(fitter: &Fitter, search: &Search, index: usize) -> Vec<Elsewhere> {
     let repaired = &search.repaired;
     let effect = &repaired.hypothesis.effects()[index];

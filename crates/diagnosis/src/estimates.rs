@@ -5,7 +5,8 @@ use jointscope_findings::Estimate;
 use jointscope_fixture::Effect;
 use jointscope_inference::{Covariance, Transform, Z95};
 
-/// The parameters of effect `index` of a hypothesis, with deviations from the coordinates' `covariance`, times `widening`.
+/// The parameters of effect `index` of a hypothesis, with deviations from the coordinates' `covariance`,
+/// times `widening`.
 pub(crate) fn estimates(
     hypothesis: &Hypothesis,
     index: usize,
@@ -41,7 +42,8 @@ pub(crate) fn estimates_within(
     estimates_by(hypothesis, index, effect, within)
 }
 
-/// The parameters of effect `index`, those that move `within` what is known of them: by their transforms, and the places of their coordinates among the effect's.
+/// The parameters of effect `index`, those that move `within` what is known of them: by their transforms, and
+/// the places of their coordinates among the effect's.
 fn estimates_by(
     hypothesis: &Hypothesis,
     index: usize,

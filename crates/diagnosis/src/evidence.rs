@@ -9,7 +9,8 @@ use crate::settings::evidence::unlisted::LEAST_COST;
 use crate::{Hypothesis, Observation};
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// Standard deviations by which χ² per degree of freedom exceeds one, the relative uncertainty of the noise's variances included.
+/// Standard deviations by which χ² per degree of freedom exceeds one, the relative uncertainty of the noise's
+/// variances included.
 pub(crate) fn excess(chi2_per_dof: f64, degrees: usize, noise_uncertainty: f64) -> f64 {
     (chi2_per_dof - 1.0) / (2.0 / degrees.max(1) as f64).sqrt().hypot(noise_uncertainty)
 }
@@ -27,14 +28,14 @@ pub(crate) fn deviates_by_chance(fitter: &Fitter, hypothesis: &Hypothesis) -> bo
         <= quantities + fitter.settings.selection.deviated * (2.0 * quantities).sqrt()
 }
 
-/// Minus twice the logarithm of the evidence, up to a constant: χ² and priors, divided by the variance `inflation`, and a penalty for every
-/// parameter.
+/// Minus twice the logarithm of the evidence, up to a constant: χ² and priors, divided by the variance
+/// `inflation`, and a penalty for every parameter.
 pub(crate) fn cost(fitter: &Fitter, fit: &Fit, inflation: f64) -> f64 {
     fit.objective / inflation + parameter_penalty(&fitter.settings.selection, &fit.hypothesis)
 }
 
-/// The weight, against one for the best hypothesis, of physics that none covers: the worse the best fit is, the likelier it is that none is
-/// right.
+/// The weight, against one for the best hypothesis, of physics that none covers: the worse the best fit is,
+/// the likelier it is that none is right.
 fn unlisted(fitter: &Fitter, best: &Fit) -> f64 {
     let Fitter { observation, settings, .. } = fitter;
     let chi2_per_dof = best.chi2_per_dof(observation);
@@ -44,7 +45,8 @@ fn unlisted(fitter: &Fitter, best: &Fit) -> f64 {
     (-0.5 * cost.max(LEAST_COST)).exp()
 }
 
-/// The probabilities of hypotheses of these costs, of which `best` is one. They sum to less than one: the rest is something not listed.
+/// The probabilities of hypotheses of these costs, of which `best` is one. They sum to less than one: the
+/// rest is something not listed.
 pub(crate) fn probabilities(fitter: &Fitter, best: &Fit, costs: &[f64]) -> Vec<f64> {
     let lowest = costs.iter().copied().fold(f64::INFINITY, f64::min);
     let weight = |cost: &f64| (-0.5 * (cost - lowest)).exp();
@@ -52,8 +54,8 @@ pub(crate) fn probabilities(fitter: &Fitter, best: &Fit, costs: &[f64]) -> Vec<f
     costs.iter().map(|cost| weight(cost) / total).collect()
 }
 
-/// Whether what the best fit leaves is so much that nothing can be stated: not even if all of `candidates` were as good as the best. That
-/// is known without a fit of any of them.
+/// Whether what the best fit leaves is so much that nothing can be stated: not even if all of `candidates`
+/// were as good as the best. That is known without a fit of any of them.
 pub(crate) fn nothing_can_be_stated(fitter: &Fitter, best: &Fit, candidates: usize) -> bool {
     let hypotheses = candidates as f64 + 1.0;
     hypotheses / (hypotheses + unlisted(fitter, best)) < fitter.settings.evidence.stated
@@ -64,7 +66,8 @@ pub(crate) fn upper_tail(z: f64) -> f64 {
     Normal::standard().sf(z)
 }
 
-/// Whether a fit leaves no more than noise, its quantities no farther than chance; `strictly` not a tenth of the noise more.
+/// Whether a fit leaves no more than noise, its quantities no farther than chance; `strictly` not a tenth of
+/// the noise more.
 pub(crate) fn explains(fitter: &Fitter, fit: &Fit, strictly: bool) -> bool {
     let observation = fitter.observation;
     let chi2_per_dof = fit.chi2_per_dof(observation);

@@ -1,4 +1,5 @@
-//! What a diagnosis shows besides its findings: where the mismatch sits, how it goes with frequency, what else the reader must know.
+//! What a diagnosis shows besides its findings: where the mismatch sits, how it goes with frequency, what
+//! else the reader must know.
 
 use crate::departures::{Departure, farthest};
 use crate::diagnosis::Diagnosis;
@@ -93,8 +94,9 @@ impl EndErrors {
 }
 
 impl Diagnosis {
-    /// χ² per degree of freedom that the refitted and the repaired model leave where it is more than noise and their modes have no error all the same: what is left
-    /// is then in what modes do not tell, gains of single records, mass lines, upper residuals. `None` where there is no such thing, or lines decided.
+    /// χ² per degree of freedom that the refitted and the repaired model leave where it is more than noise
+    /// and their modes have no error all the same: what is left is then in what modes do not tell, gains of
+    /// single records, mass lines, upper residuals. `None` where there is no such thing, or lines decided.
     pub fn missed_beside_modes(&self) -> [Option<f64>; 2] {
         let Some(errors) = &self.model_error else { return [None; 2] };
         let [_, refitted, repaired] = self.chi2_per_dof();
@@ -105,14 +107,15 @@ impl Diagnosis {
         })
     }
 
-    /// Whether no finding names the mismatch: there is none, or something that is not listed is likelier than any. Then the places, which assume
-    /// no law, are what there is to see.
+    /// Whether no finding names the mismatch: there is none, or something that is not listed is likelier than
+    /// any. Then the places, which assume no law, are what there is to see.
     pub fn is_unnamed(&self) -> bool {
         self.findings.iter().all(Finding::is_doubtful)
     }
 
-    /// What came nearest to a finding where nothing is needed, and the share of tests in which one of all names does as well by chance, if that is little: a Bayes factor of b or more has
-    /// under the null hypothesis a probability of 1/b at the most (Markov's inequality), for each of the names.
+    /// What came nearest to a finding where nothing is needed, and the share of tests in which one of all
+    /// names does as well by chance, if that is little: a Bayes factor of b or more has under the null
+    /// hypothesis a probability of 1/b at the most (Markov's inequality), for each of the names.
     pub fn nearest_by_chance(&self) -> Option<(&Tried, f64)> {
         let consistent = self.verdict == Verdict::Consistent;
         let nearest = self.tried.first().filter(|_| consistent)?;
@@ -120,7 +123,8 @@ impl Diagnosis {
         (by_chance < LEAST_BY_CHANCE).then_some((nearest, by_chance))
     }
 
-    /// The one record that is another multiple of what the fixture makes of it than the others, where what was found leaves much of the FRFs.
+    /// The one record that is another multiple of what the fixture makes of it than the others, where what
+    /// was found leaves much of the FRFs.
     pub fn odd_record(&self) -> Option<OddRecord> {
         let [_, missed, misses] = self.nrmse();
         let is_missed =
@@ -146,7 +150,8 @@ impl Diagnosis {
         self.residual_correlation.abs() <= NOT_WHITE
     }
 
-    /// Whether all that is amiss are quantities far from what is stated: with them there, the FRFs are explained down to their noise.
+    /// Whether all that is amiss are quantities far from what is stated: with them there, the FRFs are
+    /// explained down to their noise.
     pub fn is_only_departed(&self) -> bool {
         let limit = explained(&self.observation, &Settings::default());
         self.verdict == Verdict::Unexplained
@@ -155,8 +160,8 @@ impl Diagnosis {
             && self.search.repaired.chi2_per_dof(&self.observation) < limit
     }
 
-    /// The quantity that the refit without effects took farthest from what is stated, and by how many standard deviations, where that is
-    /// beyond belief.
+    /// The quantity that the refit without effects took farthest from what is stated, and by how many
+    /// standard deviations, where that is beyond belief.
     pub fn farthest_quantity(&self) -> Option<(&str, f64)> {
         farthest(&self.stated[0]).filter(|(_, deviations)| *deviations > DEPARTED)
     }

@@ -15,10 +15,11 @@ pub struct FrfEvidence {
     /// What χ² and priors lose without it.
     #[serde(rename = "gain_chi2")]
     pub gain: f64,
-    /// The same at other places of its body, where the recording does not tell them apart, the most probable first.
+    /// The same at other places of its body, where the recording does not tell them apart, the most probable
+    /// first.
     pub elsewhere: Vec<Elsewhere>,
-    /// Its place with one free scalar a line in its stead, beside the other findings: the measured δ(ω) that its law has to follow. `None`
-    /// where its place is not of rank one.
+    /// Its place with one free scalar a line in its stead, beside the other findings: the measured δ(ω) that
+    /// its law has to follow. `None` where its place is not of rank one.
     #[serde(skip)]
     pub measured: Option<Location>,
 }
@@ -41,7 +42,8 @@ pub struct Elsewhere {
     /// Parameters there, with their uncertainty.
     #[serde(rename = "parameters", serialize_with = "jointscope_findings::parameters")]
     pub estimates: Vec<Estimate>,
-    /// Probability that it is there if it is what its name says; the rest is for where the finding states it, and other places.
+    /// Probability that it is there if it is what its name says; the rest is for where the finding states it,
+    /// and other places.
     pub share: f64,
 }
 

@@ -32,8 +32,9 @@ impl Fit {
         self.chi2 / (observation.degrees().saturating_sub(self.hypothesis.effect_parameters())).max(1) as f64
     }
 
-    /// Minus twice the logarithm of the evidence by the default settings, up to a constant: what was minimised, divided by the variance `inflation`, and a
-    /// penalty for every parameter. Names are weighed by it.
+    /// Minus twice the logarithm of the evidence by the default settings, up to a constant: what was
+    /// minimised, divided by the variance `inflation`, and a penalty for every parameter. Names are weighed
+    /// by it.
     pub fn cost(&self, inflation: f64) -> f64 {
         self.objective / inflation + parameter_penalty(&Settings::default().selection, &self.hypothesis)
     }

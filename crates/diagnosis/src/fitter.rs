@@ -1,4 +1,5 @@
-//! Fits of hypotheses to an observation: from nearby, and from afar by stages in which a share of the signal counts as noise.
+//! Fits of hypotheses to an observation: from nearby, and from afar by stages in which a share of the signal
+//! counts as noise.
 
 use crate::settings::Settings;
 use crate::{Fit, Hypothesis, Linearisation, Observation, Watch};
@@ -23,8 +24,8 @@ pub(crate) struct Iterate {
     linear: Option<Linearisation>,
 }
 
-/// The FRFs of an observation with a share of the signal, `inflation`, counted as noise; `FIXED` where there is none of that, so that the
-/// weights stay.
+/// The FRFs of an observation with a share of the signal, `inflation`, counted as noise; `FIXED` where there
+/// is none of that, so that the weights stay.
 struct Problem<'a, const FIXED: bool> {
     fitter: Fitter<'a>,
     inflation: f64,
@@ -122,7 +123,8 @@ impl<'a> Fitter<'a> {
         Linearisation::default().extended(at, self.observation, |_| self.settings.fit.difference)
     }
 
-    /// Central differences by steps so small that every digit counts which rounding leaves: for uncertainties.
+    /// Central differences by steps so small that every digit counts which rounding leaves: for
+    /// uncertainties.
     pub(crate) fn linearised_exactly(&self, at: &Hypothesis) -> Linearisation {
         let difference = self.settings.fit.difference;
         let (change, least) = self.settings.fit.small_difference;
@@ -205,8 +207,8 @@ impl<'a> Fitter<'a> {
         Some(Fit { objective: at.1, ..self.fit(at.0) })
     }
 
-    /// The stages of a fit from afar on a thinned observation, which this is: good enough to compare hypotheses by. Its objective is that of
-    /// the last stage.
+    /// The stages of a fit from afar on a thinned observation, which this is: good enough to compare
+    /// hypotheses by. Its objective is that of the last stage.
     pub(crate) fn on_thinned_lines(&self, start: &Hypothesis) -> Option<Fit> {
         self.inflated(start, &self.settings.fit.inflation.0)
     }
@@ -222,7 +224,8 @@ impl<'a> Fitter<'a> {
         Fit { hypothesis: at.hypothesis, predicted: at.predicted, chi2, objective }
     }
 
-    /// A fit from nearby, given up where it will hardly come below `limit`, with derivatives of the first coordinates where these are known.
+    /// A fit from nearby, given up where it will hardly come below `limit`, with derivatives of the first
+    /// coordinates where these are known.
     ///
     /// `None` where the start predicts no finite FRFs.
     pub(crate) fn local(
@@ -249,15 +252,16 @@ impl<'a> Fitter<'a> {
         self.end(at, f64::INFINITY)
     }
 
-    /// The best of a global and a local fit; the local one is given up where it will hardly come as low: far from any optimum it creeps.
+    /// The best of a global and a local fit; the local one is given up where it will hardly come as low: far
+    /// from any optimum it creeps.
     pub(crate) fn refitted(&self, start: &Hypothesis) -> Option<Fit> {
         let global = self.global(start);
         let limit = global.as_ref().map_or(f64::INFINITY, |fit| fit.objective);
         [global, self.local(start, None, limit)].into_iter().flatten().reduce(better)
     }
 
-    /// The `first` fit or, where that leaves much, the best of it and of global fits from about the start: one deviation up and down each quantity that is widely
-    /// known.
+    /// The `first` fit or, where that leaves much, the best of it and of global fits from about the start:
+    /// one deviation up and down each quantity that is widely known.
     pub(crate) fn refitted_widely(&self, start: &Hypothesis, first: Fit) -> Fit {
         let (much, followed) = self.settings.fit.other_starts;
         if first.chi2_per_dof(self.observation) < much {
@@ -278,8 +282,8 @@ impl<'a> Fitter<'a> {
         fits.into_iter().flatten().fold(first, |best, fit| better(fit, best))
     }
 
-    /// The fit without effect `index` that is reached by making the effect smaller step by step, so that the quantities can take over
-    /// what they are able to imitate.
+    /// The fit without effect `index` that is reached by making the effect smaller step by step, so that the
+    /// quantities can take over what they are able to imitate.
     ///
     /// `None` as well where a part of the effect is already missed by more than `limit`.
     pub(crate) fn faded(&self, full: &Hypothesis, index: usize, limit: f64) -> Option<Fit> {

@@ -1,9 +1,12 @@
-//! What noise of the force makes of FRFs that were estimated as H1: they fall short, and nothing may be named for that.
+//! What noise of the force makes of FRFs that were estimated as H1: they fall short, and nothing may be named
+//! for that.
 //!
-//! H1 = S_xf/S_ff has the noise of the force in S_ff alone, so it is too small by the share b of that noise in S_ff, whatever the response does. Coherence says how large b may
-//! be: 1 − γ² is b and what the noise of the response adds. All FRFs of a reference are struck by the same hammer, so b is no more than the least 1 − γ² among them, and how
-//! much of that it is, one share for the whole test, the FRFs have to tell. Where a soft tip's blow dies away b grows smoothly over many lines, as a filter's or a mass' effect
-//! does, and the variances know nothing of it.
+//! H1 = S_xf/S_ff has the noise of the force in S_ff alone, so it is too small by the share b of that noise
+//! in S_ff, whatever the response does. Coherence says how large b may be: 1 − γ² is b and what the noise of
+//! the response adds. All FRFs of a reference are struck by the same hammer, so b is no more than the least 1
+//! − γ² among them, and how much of that it is, one share for the whole test, the FRFs have to tell. Where a
+//! soft tip's blow dies away b grows smoothly over many lines, as a filter's or a mass' effect does, and the
+//! variances know nothing of it.
 
 use crate::Observation;
 use crate::evidence::explained;
@@ -12,7 +15,8 @@ use crate::fitter::Fitter;
 use crate::penalty::needed_gain;
 use crate::settings::lines::force_noise::MOST_SHORTFALL;
 
-/// Shares of the possible shortfall at which the fixture is refitted; the best lies where the parabola through them has its least.
+/// Shares of the possible shortfall at which the fixture is refitted; the best lies where the parabola
+/// through them has its least.
 const SHARES: [f64; 3] = [0.0, 0.5, 1.0];
 
 /// FRFs that fall short, as a hypothesis has it that is fitted to them.
@@ -55,8 +59,8 @@ fn possible(observation: &Observation) -> Option<Vec<f64>> {
 }
 
 impl Shortfall {
-    /// The most likely one beside what was fitted; `None` where coherence rules out that this matters, or that it leaves no more than noise: residuals become no smaller than by
-    /// what the FRFs are changed by.
+    /// The most likely one beside what was fitted; `None` where coherence rules out that this matters, or
+    /// that it leaves no more than noise: residuals become no smaller than by what the FRFs are changed by.
     pub(crate) fn beside(fitter: &Fitter, fit: &Fit) -> Option<Self> {
         let (observation, hypothesis) = (fitter.observation, &fit.hypothesis);
         let possible = possible(observation)?;

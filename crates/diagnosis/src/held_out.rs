@@ -45,8 +45,8 @@ impl Division {
         Ok(Some(Division { what: what.collect(), unseen: unseen.collect(), seen }))
     }
 
-    /// How well the outcome of a search that was given [`Division::seen`] alone predicts the rest. Where nothing is named of `found` in the whole
-    /// recording, nothing is repaired.
+    /// How well the outcome of a search that was given [`Division::seen`] alone predicts the rest. Where
+    /// nothing is named of `found` in the whole recording, nothing is repaired.
     pub(crate) fn judge(&self, blind: &Search, found: &Search, observation: &Observation) -> Option<HeldOut> {
         let error = |fit: &Fit| -> Option<f64> {
             let predicted = fit.hypothesis.predict(observation).ok()?;

@@ -1,24 +1,28 @@
 //! What physics a fixture leaves out, told from the recordings that disagree with it.
 //!
-//! The questions are kept apart as in the physics. *Is there anything?* The fixture is refitted within its tolerances, as priors,
-//! and only what is left against the noise is a mismatch. *What, and where?* Every effect of the fixture file at every legal
-//! place ([`catalogue`]) is tried with the tolerances linearised, the promising ones are fitted in full together with them, the
-//! best is kept if it earns its price, what is left is searched again, effects are exchanged and dropped ([`Search`]). *How
-//! sure?* Every finding is replaced by every other name in the company of the rest; names that serve as well are alternatives with
-//! probabilities. *Is it better?* The search goes first without two bands and one FRF, which are then predicted; the whole recording
-//! continues from what was found.
+//! The questions are kept apart as in the physics. *Is there anything?* The fixture is refitted within its
+//! tolerances, as priors, and only what is left against the noise is a mismatch. *What, and where?* Every
+//! effect of the fixture file at every legal place ([`catalogue`]) is tried with the tolerances linearised,
+//! the promising ones are fitted in full together with them, the best is kept if it earns its price, what is
+//! left is searched again, effects are exchanged and dropped ([`Search`]). *How sure?* Every finding is
+//! replaced by every other name in the company of the rest; names that serve as well are alternatives with
+//! probabilities. *Is it better?* The search goes first without two bands and one FRF, which are then
+//! predicted; the whole recording continues from what was found.
 //!
-//! No model of a real structure is right to the noise. Where the fixture as refitted leaves more, modes are compared before lines, the model's own error a
-//! part of the likelihood ([`ModelError`]): what explains the modes without any error is confirmed on lines, down to their noise; otherwise the name wins
-//! that makes the error smaller. With a [baseline](DiagnosisOptions::baseline) what is diagnosed is what has changed since.
+//! No model of a real structure is right to the noise. Where the fixture as refitted leaves more, modes are
+//! compared before lines, the model's own error a part of the likelihood ([`ModelError`]): what explains the
+//! modes without any error is confirmed on lines, down to their noise; otherwise the name wins that makes the
+//! error smaller. With a [baseline](DiagnosisOptions::baseline) what is diagnosed is what has changed since.
 //!
 //! * [`Observation`]: the FRFs on the lines in use, each value with its weight;
 //! * [`Hypothesis`]: quantities of the fixture that may move, and effects with free parameters;
 //! * [`Fit`]: a hypothesis at its maximum of likelihood and prior;
 //! * [`Search`]: nominal, refitted and repaired model;
 //! * [`locate`], [`measure`]: the place of a mismatch with no law assumed, and the δ(ω) found there;
-//! * [`TestDrift`]: a structure that changed while it was tested: told from the poles of the references, before any physics is named;
-//! * [`Diagnosis`]: verdict, findings with intervals and alternatives, mismatch by FRF and band, the held-out judgement.
+//! * [`TestDrift`]: a structure that changed while it was tested: told from the poles of the references,
+//!   before any physics is named;
+//! * [`Diagnosis`]: verdict, findings with intervals and alternatives, mismatch by FRF and band, the held-out
+//!   judgement.
 //!
 //! ```no_run
 //! use jointscope_diagnosis::{Diagnosis, DiagnosisOptions};

@@ -1,4 +1,5 @@
-//! Derivatives of the FRFs by quantities and effects: from one solution of the model where it has them, else by differences.
+//! Derivatives of the FRFs by quantities and effects: from one solution of the model where it has them, else
+//! by differences.
 
 use crate::{Hypothesis, Observation};
 use jointscope_inference::NormalEquations;
@@ -13,8 +14,9 @@ pub struct Linearisation {
 }
 
 impl Linearisation {
-    /// These derivatives for the first coordinates of `at`, and those of one solution for the rest; where that has none, central differences by `steps`, or one-sided
-    /// ones where a coordinate lies on its bound, such as a dashpot of zero. A coordinate that cannot be moved gets zeros.
+    /// These derivatives for the first coordinates of `at`, and those of one solution for the rest; where
+    /// that has none, central differences by `steps`, or one-sided ones where a coordinate lies on its bound,
+    /// such as a dashpot of zero. A coordinate that cannot be moved gets zeros.
     pub(crate) fn extended(
         mut self,
         at: &Hypothesis,
@@ -32,8 +34,9 @@ impl Linearisation {
         self
     }
 
-    /// The derivatives of one solution; where that has none, forward differences from `predicted`, which `at` predicts: half the price of central ones, right to a
-    /// thousandth, which is enough to find the way but not to state an uncertainty.
+    /// The derivatives of one solution; where that has none, forward differences from `predicted`, which `at`
+    /// predicts: half the price of central ones, right to a thousandth, which is enough to find the way but
+    /// not to state an uncertainty.
     pub(crate) fn forward(
         at: &Hypothesis,
         predicted: &[Complex64],

@@ -1,12 +1,15 @@
 //! Where a mismatch sits, with no law assumed: one unknown dynamic stiffness δ(ω) a place.
 //!
-//! A component that was left out and acts through one station b changes the dynamic stiffness by δ·b·bᵀ, and so the FRFs by −γ(ω)·p(ω) with a
-//! pattern p that the model knows and γ = δ/(1 + δ·bᵀZ⁻¹b). With more FRFs than one, a free γ on every line is over-determined: at the right
-//! place one γ explains all FRFs within their noise, at a wrong one it cannot. What stays unexplained, by place, FRF and band, is the map of
-//! the mismatch; the γ of the best place, turned back into δ, is a measured dynamic stiffness, whose law over frequency names the physics.
+//! A component that was left out and acts through one station b changes the dynamic stiffness by δ·b·bᵀ, and
+//! so the FRFs by −γ(ω)·p(ω) with a pattern p that the model knows and γ = δ/(1 + δ·bᵀZ⁻¹b). With more FRFs
+//! than one, a free γ on every line is over-determined: at the right place one γ explains all FRFs within
+//! their noise, at a wrong one it cannot. What stays unexplained, by place, FRF and band, is the map of the
+//! mismatch; the γ of the best place, turned back into δ, is a measured dynamic stiffness, whose law over
+//! frequency names the physics.
 //!
-//! Stated deviations include noise, tolerances and abscissa. In twenty simulated tests of 86 lines each, two of them cover the true δ on 92 % of the lines
-//! for an added mass, on 94 % for a channel's gain and on 81 % for a spring in series, and the true parameter of the law in nine cases of ten or more
+//! Stated deviations include noise, tolerances and abscissa. In twenty simulated tests of 86 lines each, two
+//! of them cover the true δ on 92 % of the lines for an added mass, on 94 % for a channel's gain and on 81 %
+//! for a spring in series, and the true parameter of the law in nine cases of ten or more
 //! (`stated_deviations_cover_the_truth_about_as_often_as_they_should`).
 
 mod descent;
@@ -68,7 +71,8 @@ pub struct Location {
     pub site: Site,
     /// χ² per degree of freedom that is left with one free scalar a line there, tolerances yielding.
     pub chi2_per_dof: f64,
-    /// Σ (departure/std)² of the fixture's quantities there: a wrong place often explains as much, with tolerances that nobody would believe.
+    /// Σ (departure/std)² of the fixture's quantities there: a wrong place often explains as much, with
+    /// tolerances that nobody would believe.
     pub departures: f64,
     /// Real values less real unknowns.
     pub degrees: usize,
@@ -82,7 +86,8 @@ pub struct Location {
     /// δ on each line where it is determined; stated of the best places.
     #[serde(skip)]
     pub delta: Vec<LineEstimate>,
-    /// Number of lines without δ: the pattern vanishes, too few FRFs are valid, or the noise does not let it be inverted.
+    /// Number of lines without δ: the pattern vanishes, too few FRFs are valid, or the noise does not let it
+    /// be inverted.
     #[serde(skip)]
     pub masked: usize,
     /// The laws that come closest to δ(ω), the closest first; stated of the best places.
@@ -112,8 +117,8 @@ pub struct LawFit {
     /// Its parameters.
     #[serde(serialize_with = "by_name")]
     pub parameters: Vec<LawParameter>,
-    /// χ² per degree of freedom that the law leaves of δ, tolerances yielding: what it leaves of the FRFs beyond what free scalars leave. Far
-    /// above 1 where δ does not follow it, never below 0.
+    /// χ² per degree of freedom that the law leaves of δ, tolerances yielding: what it leaves of the FRFs
+    /// beyond what free scalars leave. Far above 1 where δ does not follow it, never below 0.
     pub chi2_per_dof: f64,
     /// Real values of δ less parameters.
     pub degrees: usize,
@@ -145,8 +150,9 @@ fn by_name<S: Serializer>(parameters: &[LawParameter], serializer: S) -> Result<
 pub struct LineEstimate {
     /// The line, Hz.
     pub frequency: f64,
-    /// δ: the unknown component's dynamic stiffness (N/m for a body or a translation in series, N·m/rad for a rotation in series: there
-    /// infinite means that nothing yields), the relative change of a joint's elastic stiffness or of a channel (1), a position's offset (m).
+    /// δ: the unknown component's dynamic stiffness (N/m for a body or a translation in series, N·m/rad for a
+    /// rotation in series: there infinite means that nothing yields), the relative change of a joint's
+    /// elastic stiffness or of a channel (1), a position's offset (m).
     #[serde(serialize_with = "jointscope_spectra::complex")]
     pub value: Complex64,
     /// Standard deviation of its real part, and of its imaginary part.
@@ -154,8 +160,8 @@ pub struct LineEstimate {
 }
 
 impl Location {
-    /// The effects that the laws of this place are, the closest law first: those of `candidates` that act through it and of which a law tells every parameter but an abscissa and what
-    /// is nothing unless stated.
+    /// The effects that the laws of this place are, the closest law first: those of `candidates` that act
+    /// through it and of which a law tells every parameter but an abscissa and what is nothing unless stated.
     pub(crate) fn effects(&self, candidates: &[Candidate], fixture: &Fixture) -> Vec<Effect> {
         let of_law = |law: &LawFit| {
             let told =

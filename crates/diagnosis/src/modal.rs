@@ -1,8 +1,9 @@
 //! Hypotheses compared by modes, the model's own error a part of the likelihood.
 //!
-//! No model of a real structure is exact: its natural frequencies are off by some tenths of a per cent, its shapes and damping by some per cent, and
-//! against the noise of the FRFs every name is refuted. What decides is which name leaves the smallest error of the model, and how much smaller
-//! than no name. So the error is a part of the likelihood, common to all hypotheses, its sizes estimated for each
+//! No model of a real structure is exact: its natural frequencies are off by some tenths of a per cent, its
+//! shapes and damping by some per cent, and against the noise of the FRFs every name is refuted. What decides
+//! is which name leaves the smallest error of the model, and how much smaller than no name. So the error is a
+//! part of the likelihood, common to all hypotheses, its sizes estimated for each
 //! ([`jointscope_model_error`]): a name wins by making it smaller.
 //!
 //! * [`again`]: what was found in the whole of a recording, in a part of it;

@@ -27,9 +27,9 @@ pub(crate) fn verdict(fitter: &Fitter, search: &Search, findings: &[Finding]) ->
     }
 }
 
-/// The hypotheses for each effect of the repaired fit. Where one is more probable than what was found, it takes its place and everything is
-/// asked again: a search goes one effect at a time, and what was best alone, or in a part of the recording, need not be best in company
-/// and in the whole.
+/// The hypotheses for each effect of the repaired fit. Where one is more probable than what was found, it
+/// takes its place and everything is asked again: a search goes one effect at a time, and what was best
+/// alone, or in a part of the recording, need not be best in company and in the whole.
 fn settled(fitter: &Fitter, search: &mut Search) -> Vec<Vec<Alternative>> {
     let settings = &fitter.settings.evidence;
     // Each replacement costs the fits of all candidates for all effects.

@@ -28,13 +28,13 @@ pub struct Observation {
 }
 
 impl Observation {
-    /// Takes a recording on the lines for which `in_use` holds (Hz). Variances that the set carries are kept; without
-    /// them they are estimated from coherence or scatter.
+    /// Takes a recording on the lines for which `in_use` holds (Hz). Variances that the set carries are kept;
+    /// without them they are estimated from coherence or scatter.
     ///
     /// The noise is estimated on all lines before any are left out. Lines at 0 Hz are never used, and neither
-    /// are single values without coherence. Of thousands of lines those are used that hold what there is to be told, those about
-    /// resonances above all. Where the noise had to be estimated from scatter, and resonances differ among FRFs of one response by more than
-    /// it, that drift counts as noise too.
+    /// are single values without coherence. Of thousands of lines those are used that hold what there is to
+    /// be told, those about resonances above all. Where the noise had to be estimated from scatter, and
+    /// resonances differ among FRFs of one response by more than it, that drift counts as noise too.
     ///
     /// # Errors
     /// No line left.
@@ -70,7 +70,8 @@ impl Observation {
         Ok(used)
     }
 
-    /// Adds what drift makes of the FRFs to the variances; `whole` has all lines, of which these are the `kept` ones.
+    /// Adds what drift makes of the FRFs to the variances; `whole` has all lines, of which these are the
+    /// `kept` ones.
     fn allow_for_drift(&mut self, whole: &FrfSet, kept: &[bool]) {
         let Some(drift) = self.drift.clone() else { return };
         let wanted: Vec<usize> = (0..kept.len()).filter(|&line| kept[line]).collect();
@@ -92,7 +93,8 @@ impl Observation {
         self.recorded_lines
     }
 
-    /// How far the resonances moved from FRF to FRF, where that is beyond their noise and counts as noise itself.
+    /// How far the resonances moved from FRF to FRF, where that is beyond their noise and counts as noise
+    /// itself.
     pub fn drift(&self) -> Option<&Drift> {
         self.drift.as_ref()
     }
@@ -130,8 +132,8 @@ impl Observation {
         })
     }
 
-    /// The observation on at most `limit` lines, evenly thinned: enough for a softened fit, which follows the FRFs' course and
-    /// leaves their peaks alone.
+    /// The observation on at most `limit` lines, evenly thinned: enough for a softened fit, which follows the
+    /// FRFs' course and leaves their peaks alone.
     pub fn thinned(&self, limit: usize) -> Self {
         let n = self.lines().len();
         let every = n.div_ceil(limit.max(1)).max(1);
@@ -226,8 +228,8 @@ impl Observation {
         2 * self.weight.iter().filter(|w| **w > 0.0).count()
     }
 
-    /// The weight of value `index` when a share `epsilon` of the measured, the modelled and some of the local level
-    /// counts as noise too: sharp peaks then do not decide where a fit goes.
+    /// The weight of value `index` when a share `epsilon` of the measured, the modelled and some of the local
+    /// level counts as noise too: sharp peaks then do not decide where a fit goes.
     pub(crate) fn inflated(&self, index: usize, modelled: Complex64, epsilon: f64) -> f64 {
         let size = self.values()[index].norm_sqr() + modelled.norm_sqr() + LEVEL_SHARE * self.level[index];
         inflated_weight(self.weight[index], size, epsilon)
@@ -257,7 +259,8 @@ impl Observation {
         self.weighted_squares(modelled, &self.weight)
     }
 
-    /// χ² of modelled values on the lines from a frequency on, Hz, and the number of real values that count there.
+    /// χ² of modelled values on the lines from a frequency on, Hz, and the number of real values that count
+    /// there.
     pub(crate) fn chi2_from(&self, modelled: &[Complex64], from: f64) -> (f64, usize) {
         let hz = self.lines().hz();
         let counts = |index: &usize| hz[index % hz.len()] >= from && self.weight[*index] > 0.0;
@@ -276,8 +279,8 @@ impl Observation {
         (error / size).sqrt()
     }
 
-    /// Relative uncertainty of the noise's variances: those from coherence are smoothed over lines, those from scatter rest on the lines
-    /// nearby alone.
+    /// Relative uncertainty of the noise's variances: those from coherence are smoothed over lines, those
+    /// from scatter rest on the lines nearby alone.
     pub(crate) fn noise_uncertainty(&self) -> f64 {
         if self.has_scatter_for_noise() { SCATTER_UNCERTAINTY } else { COHERENCE_UNCERTAINTY }
     }

@@ -15,11 +15,13 @@ pub struct DiagnosisOptions {
     pub hold_out: Vec<FrfPair>,
     /// FRFs of the same structure as it was known to be right: what is diagnosed is what has changed since.
     pub baseline: Option<FrfSet>,
-    /// How long a search may take; what it has then is the answer. Without, its limit of work is all that ends it ([`Settings::work`]).
+    /// How long a search may take; what it has then is the answer. Without, its limit of work is all that
+    /// ends it ([`Settings::work`]).
     pub time_limit: Option<Duration>,
     /// Take the fixture's bare numbers as exact.
     pub exact: bool,
-    /// Whether the FRFs were estimated from hits: they carry leakage and errors that neighbouring lines share, and no name may live on those.
+    /// Whether the FRFs were estimated from hits: they carry leakage and errors that neighbouring lines
+    /// share, and no name may live on those.
     pub estimated: bool,
     /// How the search goes.
     pub settings: Settings,

@@ -1,4 +1,5 @@
-//! How the parameters of an effect move in a fit: by themselves or by their logarithms, and between which bounds.
+//! How the parameters of an effect move in a fit: by themselves or by their logarithms, and between which
+//! bounds.
 
 use crate::bodies::{extent, mass_of, turns};
 use crate::settings::effects::bounds::{
@@ -21,7 +22,8 @@ fn between(scale: f64, low: f64, high: f64) -> Parameter {
     Parameter::new(Transform::Linear { centre: 0.0, scale }).between(low / scale, high / scale)
 }
 
-/// How a fit moves a quantity that is stated wrong: as within its tolerance, what sits on a body no farther than the body may reach.
+/// How a fit moves a quantity that is stated wrong: as within its tolerance, what sits on a body no farther
+/// than the body may reach.
 pub(crate) fn if_wrong(fixture: &Fixture, tolerance: &Tolerance) -> Parameter {
     let parameter = tolerance.parameter;
     let Some(body) = sits_on(fixture, &tolerance.quantity) else { return parameter };
@@ -60,7 +62,8 @@ fn reach(fixture: &Fixture, body: usize) -> (f64, f64) {
     (low - beyond, high + beyond)
 }
 
-/// How a fit moves each of an effect's parameters, in their order; the value of a quantity that is `wrong` as that quantity moves.
+/// How a fit moves each of an effect's parameters, in their order; the value of a quantity that is `wrong` as
+/// that quantity moves.
 pub(crate) fn parameters_of(fixture: &Fixture, effect: &Effect, wrong: Parameter) -> Vec<Parameter> {
     let named = |name: &String| fixture.bodies().iter().position(|b| b.name == *name);
     let (body, second) = match &effect.place {
@@ -108,7 +111,8 @@ pub(crate) fn parameters_of(fixture: &Fixture, effect: &Effect, wrong: Parameter
     effect.kind.spec().parameters.iter().zip(&effect.parameters).map(of).collect()
 }
 
-/// The most that a body may lack at one place, kg: a block all of it, a beam a hole and the heaviest of the masses that sit on it.
+/// The most that a body may lack at one place, kg: a block all of it, a beam a hole and the heaviest of the
+/// masses that sit on it.
 fn most_missing(fixture: &Fixture, body: usize) -> f64 {
     let mass = mass_of(fixture, body);
     match &fixture.bodies()[body].kind {

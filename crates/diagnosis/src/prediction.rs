@@ -18,7 +18,8 @@ pub enum PredictionError {
     Model(#[from] LumpedError),
 }
 
-/// Writes the values of `some` FRFs, those of the places `frfs`, where they belong among `all`, each of so many `lines`.
+/// Writes the values of `some` FRFs, those of the places `frfs`, where they belong among `all`, each of so
+/// many `lines`.
 fn write_frfs(all: &mut [Complex64], some: &[Complex64], frfs: &[usize], lines: usize) {
     for (values, &i) in some.chunks_exact(lines).zip(frfs) {
         all[i * lines..(i + 1) * lines].copy_from_slice(values);
@@ -36,8 +37,9 @@ impl Hypothesis {
         Ok(accelerances(&fixture, observation.pairs(), observation.lines(), Instrument::AsRecorded)?)
     }
 
-    /// What is predicted with coordinate `index` moved by `step`. FRFs that do not depend on it are not predicted again: they are
-    /// those of `predicted`, or zero without. Of a step that is small enough for a derivative modes may follow from those that it leads `away` from.
+    /// What is predicted with coordinate `index` moved by `step`. FRFs that do not depend on it are not
+    /// predicted again: they are those of `predicted`, or zero without. Of a step that is small enough for a
+    /// derivative modes may follow from those that it leads `away` from.
     pub(crate) fn predict_moved(
         &self,
         index: usize,
@@ -85,8 +87,8 @@ impl Hypothesis {
         )
     }
 
-    /// Derivatives by coordinate `index` from one solution. They count as the work of the `predictions` that differences would take, so that a limit of work means the
-    /// same however derivatives come about.
+    /// Derivatives by coordinate `index` from one solution. They count as the work of the `predictions` that
+    /// differences would take, so that a limit of work means the same however derivatives come about.
     pub(crate) fn derivative(
         &self,
         index: usize,
@@ -106,8 +108,8 @@ impl Hypothesis {
         Some(all)
     }
 
-    /// The FRFs that coordinate `index` acts on, where that is told by its name: where a channel's point sits, if nothing but channels
-    /// is there, matters to that channel's FRFs alone.
+    /// The FRFs that coordinate `index` acts on, where that is told by its name: where a channel's point
+    /// sits, if nothing but channels is there, matters to that channel's FRFs alone.
     fn depending(&self, index: usize, observation: &Observation) -> Option<Vec<usize>> {
         let place = match self.tolerances().get(index)?.quantity.owner {
             QuantityOwner::Point(place) => place,

@@ -4,7 +4,8 @@ use crate::hypothesis::Hypothesis;
 use jointscope_fixture::{Effect, Place};
 
 impl Hypothesis {
-    /// How far quantity `index` ended from what is stated, in standard deviations, an effect that calls it wrong included.
+    /// How far quantity `index` ended from what is stated, in standard deviations, an effect that calls it
+    /// wrong included.
     pub fn deviations(&self, index: usize) -> f64 {
         self.restated(index).unwrap_or(self.coordinates[index])
     }
@@ -15,7 +16,8 @@ impl Hypothesis {
         stated && jointscope_tolerances::is_far(self.departure(index))
     }
 
-    /// Where an effect that calls quantity `index` wrong takes it, in standard deviations from what is stated.
+    /// Where an effect that calls quantity `index` wrong takes it, in standard deviations from what is
+    /// stated.
     pub(crate) fn restated(&self, index: usize) -> Option<f64> {
         let path = &self.tolerances().get(index)?.quantity.path;
         let is_of_it = |effect: &Effect| matches!(&effect.place, Place::Quantity(other, _) if other == path);

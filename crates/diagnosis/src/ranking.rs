@@ -1,9 +1,10 @@
 //! Every candidate fitted beside what a hypothesis has already, the best first.
 //!
-//! Two searches lead to a candidate's fit. A small effect is found locally, from where the hypothesis stands: its starts are scored with the
-//! quantities at their linear best, and the promising ones refined. A large effect has moved the quantities to where no linear step leads
-//! back: the global search fits every candidate from the nominal quantities besides, with inflated noise on thinned lines, and those that come
-//! near are refined on all lines.
+//! Two searches lead to a candidate's fit. A small effect is found locally, from where the hypothesis stands:
+//! its starts are scored with the quantities at their linear best, and the promising ones refined. A large
+//! effect has moved the quantities to where no linear step leads back: the global search fits every candidate
+//! from the nominal quantities besides, with inflated noise on thinned lines, and those that come near are
+//! refined on all lines.
 
 use crate::candidate::Candidate;
 use crate::fit::Fit;
@@ -38,8 +39,9 @@ pub(crate) struct Ranking<'a> {
 }
 
 impl Ranking<'_> {
-    /// Fits of `base` with one more effect, best first by objective and penalty of parameters, with the candidate's index. `global` searches
-    /// from the nominal quantities too. Candidates that will not come below `limit` are left unfinished or out.
+    /// Fits of `base` with one more effect, best first by objective and penalty of parameters, with the
+    /// candidate's index. `global` searches from the nominal quantities too. Candidates that will not come
+    /// below `limit` are left unfinished or out.
     pub(crate) fn of(&self, base: &Hypothesis, global: bool, limit: f64) -> Vec<(usize, Fit)> {
         let settings = &self.fitter.settings.ranking;
         let starts = self.starts(base);
@@ -50,7 +52,8 @@ impl Ranking<'_> {
             let best =
                 |fits: &[(usize, Fit)]| fits.iter().map(|f| f.1.objective).fold(f64::INFINITY, f64::min);
             fits = self.fitted(self.global(&nominal, &starts, 1), None, limit);
-            // One start of a candidate may end in a false minimum: where nothing explains the FRFs by itself, several are tried.
+            // One start of a candidate may end in a false minimum: where nothing explains the FRFs by itself,
+            // several are tried.
             let (much, several) = settings.several;
             if base.effect_count() == 0 && best(&fits) > much * self.fitter.observation.degrees() as f64 {
                 fits.extend(self.fitted(self.global(&nominal, &starts, several), None, limit));
@@ -62,7 +65,8 @@ impl Ranking<'_> {
         self.best_of_each(fits)
     }
 
-    /// The same from where `base` stands alone, of few candidates: where nothing large is left out, linear steps tell which gain most.
+    /// The same from where `base` stands alone, of few candidates: where nothing large is left out, linear
+    /// steps tell which gain most.
     pub(crate) fn nearby(&self, base: &Hypothesis, limit: f64) -> Vec<(usize, Fit)> {
         let few = self.fitter.settings.ranking.few;
         let Some(scan) = Scan::about(self.fitter, base.clone(), 0.0, true) else { return Vec::new() };
@@ -70,24 +74,25 @@ impl Ranking<'_> {
         self.best_of_each(self.fitted_beside(base, chosen, &scan, limit))
     }
 
-    /// Every candidate fitted from where `base` stands, which is where an effect that is looked for would leave the quantities; fits that
-    /// will not come near `limit` are left unfinished.
+    /// Every candidate fitted from where `base` stands, which is where an effect that is looked for would
+    /// leave the quantities; fits that will not come near `limit` are left unfinished.
     pub(crate) fn look_alikes(&self, base: &Hypothesis, limit: f64) -> Vec<(usize, Fit)> {
         let starts = self.starts(base);
-        // The quantities stand right already, but no line leads from nothing to an effect that moves peaks by many widths.
+        // The quantities stand right already, but no line leads from nothing to an effect that moves peaks by
+        // many widths.
         let mut fits = self.fitted(self.global(base, &starts, 1), None, limit);
         fits.extend(self.local(base, &starts, usize::MAX, 1, limit));
         self.best_of_each(fits)
     }
 
-    /// Every candidate fitted from where `base` stands alone, by the sizes and starts that serve best to first order; fits that will not come near
-    /// `limit` are left unfinished or out.
+    /// Every candidate fitted from where `base` stands alone, by the sizes and starts that serve best to
+    /// first order; fits that will not come near `limit` are left unfinished or out.
     pub(crate) fn of_each(&self, base: &Hypothesis, limit: f64) -> Vec<(usize, Fit)> {
         self.best_of_each(self.local(base, &self.starts(base), usize::MAX, 1, limit))
     }
 
-    /// What serves better than `limit` in the stead of an effect that `base` has lost: from where it left the quantities, and with `global`
-    /// from the nominal ones too.
+    /// What serves better than `limit` in the stead of an effect that `base` has lost: from where it left the
+    /// quantities, and with `global` from the nominal ones too.
     pub(crate) fn in_stead(&self, base: &Hypothesis, global: bool, limit: f64) -> Vec<(usize, Fit)> {
         let starts = self.starts(base);
         let mut fits = self.local(base, &starts, self.fitter.settings.ranking.local.0, 1, limit);
@@ -105,7 +110,8 @@ impl Ranking<'_> {
             .collect()
     }
 
-    /// Fits of the best candidates from the base itself, each at the size that serves to first order, and at the best start of its grid.
+    /// Fits of the best candidates from the base itself, each at the size that serves to first order, and at
+    /// the best start of its grid.
     fn local(
         &self,
         base: &Hypothesis,
@@ -156,7 +162,8 @@ impl Ranking<'_> {
         (0..self.candidates.len()).filter(move |&c| !self.excluded.contains(&c) && !has(c))
     }
 
-    /// Where the best fits with inflated noise lead, from the base and from where a fit without a candidate leads.
+    /// Where the best fits with inflated noise lead, from the base and from where a fit without a candidate
+    /// leads.
     fn global(&self, base: &Hypothesis, starts: &[(usize, usize)], each: usize) -> Vec<Start> {
         let settings = &self.fitter.settings.ranking;
         let inflation = self.fitter.settings.fit.inflation.0;
@@ -212,7 +219,8 @@ impl Ranking<'_> {
         self.front(fits, settings.whole).into_iter().map(start).collect()
     }
 
-    /// The candidates that gain most about a scan's base to first order, each at the size that serves best: (gain, candidate, effect).
+    /// The candidates that gain most about a scan's base to first order, each at the size that serves best:
+    /// (gain, candidate, effect).
     fn first_order(
         &self,
         base: &Hypothesis,
@@ -267,8 +275,9 @@ impl Ranking<'_> {
         order.into_iter().map(effects).collect()
     }
 
-    /// Fits from all starts, with derivatives of the base where they set out from it. The first few are fitted to the end, the others only
-    /// where they come near them; all of them only where they come below `limit`.
+    /// Fits from all starts, with derivatives of the base where they set out from it. The first few are
+    /// fitted to the end, the others only where they come near them; all of them only where they come below
+    /// `limit`.
     fn fitted(&self, starts: Vec<Start>, nearby: Option<&Linearisation>, limit: f64) -> Vec<(usize, Fit)> {
         let settings = &self.fitter.settings.ranking;
         let count = self.fitter.watch.count(starts.len());
@@ -300,8 +309,8 @@ impl Ranking<'_> {
         fits
     }
 
-    /// Of fits with inflated noise (candidate, objective, hypothesis) those that come near the best: one of each of at most `count` candidates,
-    /// two of the best `twice`.
+    /// Of fits with inflated noise (candidate, objective, hypothesis) those that come near the best: one of
+    /// each of at most `count` candidates, two of the best `twice`.
     fn front(
         &self,
         mut fits: Vec<(usize, f64, Hypothesis)>,

@@ -4,8 +4,8 @@ use crate::Hypothesis;
 use crate::settings::effects::rarity::LONGER_JOINT;
 use jointscope_fixture::{Effect, EffectKind, Place, QuantityOwner};
 
-/// ln of how much rarer the effects of a hypothesis are than the commonest, nats: by kind, a joint that is longer than its points say, and a quantity that is expected twice as far off
-/// is wrong half as often.
+/// ln of how much rarer the effects of a hypothesis are than the commonest, nats: by kind, a joint that is
+/// longer than its points say, and a quantity that is expected twice as far off is wrong half as often.
 pub(crate) fn rarity(hypothesis: &Hypothesis) -> f64 {
     let of = |(index, effect): (usize, &Effect)| {
         let far = hypothesis.expected_error(index).map_or(0.0, f64::ln);

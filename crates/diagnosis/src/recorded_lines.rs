@@ -6,8 +6,8 @@ use crate::settings::lines::recordings::{
 use jointscope_frf::{Drift, resonant_lines};
 use jointscope_spectra::FrfSet;
 
-/// Which lines of a recording are used: all of a short one; of a long one those about resonances, ever more sparsely with the distance, and evenly
-/// spread ones.
+/// Which lines of a recording are used: all of a short one; of a long one those about resonances, ever more
+/// sparsely with the distance, and evenly spread ones.
 pub(crate) fn lines_in_use(frfs: &FrfSet) -> Vec<bool> {
     let n = frfs.lines().len();
     let searched = frfs.pairs().len().min(SEARCHED_FRFS);
@@ -17,7 +17,8 @@ pub(crate) fn lines_in_use(frfs: &FrfSet) -> Vec<bool> {
     most_informative(frfs, KEPT_LINES)
 }
 
-/// At most so many lines: those about resonances, ever more sparsely with the distance, and evenly spread ones.
+/// At most so many lines: those about resonances, ever more sparsely with the distance, and evenly spread
+/// ones.
 pub(crate) fn most_informative(frfs: &FrfSet, most: usize) -> Vec<bool> {
     let n = frfs.lines().len();
     if n <= most {
@@ -45,10 +46,11 @@ pub(crate) fn most_informative(frfs: &FrfSet, most: usize) -> Vec<bool> {
     ONE_BY_ONE.iter().map(|grade| graded(*grade)).find(|kept| count(kept) <= most).unwrap_or(evenly)
 }
 
-/// The variances that drift adds to `variance` (by used line) of one FRF, given the |change of the FRF|² for one standard deviation.
+/// The variances that drift adds to `variance` (by used line) of one FRF, given the |change of the FRF|² for
+/// one standard deviation.
 ///
-/// A resonance moves as a whole: its lines together must not say more about its place than the drift leaves to be known, so each of
-/// them is given as much variance as makes their information that of the one move.
+/// A resonance moves as a whole: its lines together must not say more about its place than the drift leaves
+/// to be known, so each of them is given as much variance as makes their information that of the one move.
 pub(crate) fn drift_variance(
     drift: &Drift,
     hz: &[f64],

@@ -17,7 +17,8 @@ pub(crate) struct Scan<'a> {
     /// √w·derivative by coordinate.
     columns: Vec<Vec<f64>>,
     weights: Cow<'a, [f64]>,
-    /// Of the tolerances' information, which all that is tried shares; `None` where a combination of them is not determined.
+    /// Of the tolerances' information, which all that is tried shares; `None` where a combination of them is
+    /// not determined.
     factor: Option<Cholesky>,
     predicted: Vec<Complex64>,
     /// What the base leaves, √w·residual, and what the tolerances make of it.
@@ -67,8 +68,8 @@ impl<'a> Scan<'a> {
         dot(&self.residual, &self.residual) + self.base.squared_departures()
     }
 
-    /// What direction `index` of a candidate gains at its best size, to first order with the tolerances yielding, and the effect
-    /// of that size.
+    /// What direction `index` of a candidate gains at its best size, to first order with the tolerances
+    /// yielding, and the effect of that size.
     pub(crate) fn first_order(&self, candidate: &Candidate, index: usize) -> (f64, Option<Effect>) {
         let nothing = (0.0, None);
         let Some(small) = candidate.scaled(index, 1.0) else { return nothing };

@@ -1,7 +1,8 @@
 //! Of very many FRFs and lines those that a search looks at.
 //!
-//! With every channel in at least one of them, few FRFs tell nearly all that all of them tell about a structure: H_ij is made of φ_i and φ_j, mode by
-//! mode. The rest confirms: what is found is fitted to all of them, judged on all of them, and its uncertainty is by all of them.
+//! With every channel in at least one of them, few FRFs tell nearly all that all of them tell about a
+//! structure: H_ij is made of φ_i and φ_j, mode by mode. The rest confirms: what is found is fitted to all of
+//! them, judged on all of them, and its uncertainty is by all of them.
 
 use crate::Observation;
 use crate::recorded_lines::most_informative;
@@ -9,7 +10,8 @@ use crate::settings::lines::recordings::SEARCHED_FRFS;
 use crate::settings::lines::searched::{ALL_VALUES, FEWEST_LINES, SEARCHED_VALUES};
 use jointscope_spectra::{Channel, FrfPair};
 
-/// The FRFs to be searched: those with channels that are shown least so far, one after the other, and all of `besides`.
+/// The FRFs to be searched: those with channels that are shown least so far, one after the other, and all of
+/// `besides`.
 fn chosen<'a>(pairs: &'a [FrfPair], besides: &[FrfPair]) -> Vec<&'a FrfPair> {
     let mut chosen: Vec<&FrfPair> = pairs.iter().filter(|pair| besides.contains(pair)).collect();
     let shown = |chosen: &[&FrfPair], channel: &Channel, of: fn(&FrfPair) -> &Channel| {

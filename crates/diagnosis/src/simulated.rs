@@ -6,7 +6,8 @@ use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 
-/// The FRFs of a fixture, which have no noise but are known no better than to this variance, as a share of each value's square.
+/// The FRFs of a fixture, which have no noise but are known no better than to this variance, as a share of
+/// each value's square.
 pub(crate) fn simulated(
     truth: &Fixture,
     pairs: &[FrfPair],

@@ -1,14 +1,16 @@
 //! Effects on several channels that are together exactly one other effect.
 //!
-//! What a channel does to its signal is a factor on a row or a column of the FRFs, on all of them (`force`, `responses`) or on one (a record). Equal factors on all rows are one
-//! factor on everything, and so on: two effects found one after another may be one that no step from either leads to.
+//! What a channel does to its signal is a factor on a row or a column of the FRFs, on all of them (`force`,
+//! `responses`) or on one (a record). Equal factors on all rows are one factor on everything, and so on: two
+//! effects found one after another may be one that no step from either leads to.
 
 use crate::candidate::Candidate;
 use jointscope_fixture::{Effect, EffectKind, Entry, Place};
 use jointscope_lumped::signal_power;
 use jointscope_spectra::FrfPair;
 
-/// Whether the inverse of what a kind does to a signal is of that kind too: of a gain and a delay it is, of no filter.
+/// Whether the inverse of what a kind does to a signal is of that kind too: of a gain and a delay it is, of
+/// no filter.
 pub(crate) fn inverts(kind: EffectKind) -> bool {
     matches!(kind, EffectKind::ChannelGain | EffectKind::ChannelDelay)
 }
@@ -25,7 +27,8 @@ fn inverse(effect: Effect) -> Effect {
     Effect::new(effect.kind, effect.place, effect.dof, &[value])
 }
 
-/// Several of `effects`, by their places in the list, and the one of `candidates` that they are together if their parameters are the same, with the mean of these.
+/// Several of `effects`, by their places in the list, and the one of `candidates` that they are together if
+/// their parameters are the same, with the mean of these.
 pub(crate) fn as_one(
     effects: &[Effect],
     candidates: &[Candidate],

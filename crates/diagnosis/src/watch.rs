@@ -34,7 +34,8 @@ impl Display for Step<'_> {
     }
 }
 
-/// Whom to tell what a diagnosis is doing: nobody, if not said otherwise. It is told from any thread, and changes nothing.
+/// Whom to tell what a diagnosis is doing: nobody, if not said otherwise. It is told from any thread, and
+/// changes nothing.
 #[derive(Clone, Copy, Default)]
 pub struct Watch<'a>(Option<&'a (dyn Fn(Step) + Sync)>);
 

@@ -1,7 +1,8 @@
 //! How much a diagnosis may do, and how much it has done.
 //!
-//! Work is counted in predicted values of FRFs, so that the same input ends at the same place on any machine and any number of threads. It is asked
-//! for only where no others work at the same time. What a search does not come to any more is remembered by name.
+//! Work is counted in predicted values of FRFs, so that the same input ends at the same place on any machine
+//! and any number of threads. It is asked for only where no others work at the same time. What a search does
+//! not come to any more is remembered by name.
 
 use crate::settings::work::costs::{CUBE_OF_COORDINATES, MODEL};
 use crate::settings::work::shares::FITS_TOGETHER;
@@ -74,7 +75,8 @@ impl Work {
         self.within(share * left as f64 / self.total as f64, of)
     }
 
-    /// The same for what is tried beside the way to an answer: that it did not come to all it would have done is not remembered.
+    /// The same for what is tried beside the way to an answer: that it did not come to all it would have done
+    /// is not remembered.
     pub(crate) fn aside<T>(&self, share: f64, of: impl FnOnce() -> T) -> T {
         let before = self.left_out();
         let outcome = self.within(share, of);
@@ -102,7 +104,8 @@ impl Work {
         self.left_out.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
     }
 
-    /// What becomes of each of several items, as far as there is work left for `what`, some at a time on all threads.
+    /// What becomes of each of several items, as far as there is work left for `what`, some at a time on all
+    /// threads.
     pub(crate) fn each<T: Send, R: Send>(
         &self,
         items: Vec<T>,

@@ -89,7 +89,8 @@ fn an_effects_parameters_are_fitted_and_their_covariance_is_positive() {
 
 #[test]
 fn a_bounded_parameter_stops_at_its_bound_and_the_others_go_on() {
-    // The data want less loss than none: the loss factor stays at zero and the stiffness still gets its factor.
+    // The data want less loss than none: the loss factor stays at zero and the stiffness still gets its
+    // factor.
     let mut truth = fixture();
     for quantity in truth.quantities_mut().into_iter().filter(|q| q.path.starts_with("damping")) {
         quantity.quantity.value = 0.0059;
@@ -106,7 +107,8 @@ fn a_bounded_parameter_stops_at_its_bound_and_the_others_go_on() {
 
 #[test]
 fn a_dashpot_of_zero_leaves_the_spring_beside_it_a_deviation() {
-    // The data want less damping than none in the interface: its dashpot stops at zero, from where it can be moved to one side only.
+    // The data want less damping than none in the interface: its dashpot stops at zero, from where it can be
+    // moved to one side only.
     let mut truth = fixture();
     for quantity in truth.quantities_mut().into_iter().filter(|q| q.path.starts_with("damping")) {
         quantity.quantity.value = 0.0056;
@@ -202,7 +204,8 @@ fn what_resonates_between_two_starts_is_within_the_reach_of_one() {
     assert!(seen > 0);
 }
 
-/// Multiple of the highest line below which sensors may resonate on their mountings: bands end at a fifth of that, or before.
+/// Multiple of the highest line below which sensors may resonate on their mountings: bands end at a fifth of
+/// that, or before.
 const MOUNTED: f64 = 6.0;
 
 #[test]

@@ -9,8 +9,8 @@ const POINTS: usize = 5;
 const MODES: usize = 4;
 /// Damping ratio to begin with; a fit finds its own.
 const RATIO: f64 = 0.003;
-/// How many times stiffer than the beam, EI/L³ and EI/L, a clamp is taken to be: the first three natural frequencies are then lower by up to 0.13 %. Much stiffer ones would drown the first mode in
-/// rounding.
+/// How many times stiffer than the beam, EI/L³ and EI/L, a clamp is taken to be: the first three natural
+/// frequencies are then lower by up to 0.13 %. Much stiffer ones would drown the first mode in rounding.
 const CLAMP: f64 = 1e5;
 
 /// A point by its number from 0, of those spread evenly over the beam.

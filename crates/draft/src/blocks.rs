@@ -4,7 +4,8 @@ use crate::value::{known, rounded, unknown};
 use crate::{Bar, Draft, DraftError, points};
 use serde_json::{Map, Value, json};
 
-/// How far inside a block's outer end its sensor or hammer point lies: this share of its length, at the most this much, m.
+/// How far inside a block's outer end its sensor or hammer point lies: this share of its length, at the most
+/// this much, m.
 const INSIDE: (f64, f64) = (0.1, 5e-3);
 /// Damping ratio to begin with; a fit finds its own.
 const RATIO: f64 = 0.003;

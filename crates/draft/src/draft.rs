@@ -18,7 +18,8 @@ pub enum Structure {
         storeys: usize,
         /// Mass of each, kg.
         mass: f64,
-        /// One column of one storey; its LENGTH is the storey's height, its HEIGHT the side along which the storeys move.
+        /// One column of one storey; its LENGTH is the storey's height, its HEIGHT the side along which the
+        /// storeys move.
         column: Bar,
         /// Columns of each storey.
         columns: usize,
@@ -41,11 +42,13 @@ pub struct Draft {
     pub structure: Structure,
     /// One standard deviation of a dimension, m.
     pub ruler: f64,
-    /// Names of points that a recording has; their places are placeholders. Empty: points where sensors and hammer usually go.
+    /// Names of points that a recording has; their places are placeholders. Empty: points where sensors and
+    /// hammer usually go.
     pub points: Vec<String>,
     /// Points whose places are known, by name and abscissa in m, as the recording's geometry has them.
     pub placed: Vec<(String, f64)>,
-    /// The abscissa of the fixture's x = 0 in the recording's geometry, m; the points are centred on the structure where it is not stated and they do not lie on it as they are.
+    /// The abscissa of the fixture's x = 0 in the recording's geometry, m; the points are centred on the
+    /// structure where it is not stated and they do not lie on it as they are.
     pub origin: Option<f64>,
 }
 

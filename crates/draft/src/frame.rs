@@ -9,7 +9,8 @@ const MOST: usize = 100;
 /// Damping ratio to begin with; a fit finds its own.
 const RATIO: f64 = 0.01;
 
-/// What the columns weigh and how they are taken to be held, and which storeys the recording's points are taken to be on.
+/// What the columns weigh and how they are taken to be held, and which storeys the recording's points are
+/// taken to be on.
 fn notes_on_columns(draft: &Draft, column: &Bar, columns: usize, relative: f64) -> Vec<String> {
     let column_mass = column.mass(draft.ruler).0 * columns as f64;
     let mut notes = vec![

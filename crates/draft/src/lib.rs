@@ -1,10 +1,13 @@
 //! A first fixture from what a ruler and a drawing say.
 //!
-//! A [`Draft`] is a [`Structure`] (two blocks and a strip, storeys on columns, a beam) of [`Bar`]s with dimensions and [`Material`]s, the ruler's tolerance, and the points of a recording where there
-//! is one, with their places where its geometry tells them. [`Draft::fixture`] makes the fixture: masses, inertias and sections from the closed forms, their standard deviations from those of dimensions and material, points
-//! where sensors and hammer usually go, and notes on what to measure and fill in.
+//! A [`Draft`] is a [`Structure`] (two blocks and a strip, storeys on columns, a beam) of [`Bar`]s with
+//! dimensions and [`Material`]s, the ruler's tolerance, and the points of a recording where there is one,
+//! with their places where its geometry tells them. [`Draft::fixture`] makes the fixture: masses, inertias
+//! and sections from the closed forms, their standard deviations from those of dimensions and material,
+//! points where sensors and hammer usually go, and notes on what to measure and fill in.
 //!
-//! One order everywhere, as a ruler is laid on: LENGTH along x, WIDTH across, HEIGHT along y, the direction that is struck and measured.
+//! One order everywhere, as a ruler is laid on: LENGTH along x, WIDTH across, HEIGHT along y, the direction
+//! that is struck and measured.
 //!
 //! ```
 //! use jointscope_draft::{Bar, Draft, Structure};

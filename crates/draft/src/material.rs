@@ -24,7 +24,8 @@ pub struct Material {
 #[error("there is no material `{0}`; take one of {known}, or Young's modulus in Pa and density in kg/m^3 such as 2.07e11,7850", known = names())]
 pub struct MaterialError(String);
 
-/// Name, E in Pa with its relative deviation, density in kg/m³ with its, Poisson's ratio. Deviations are those between alloys and tempers of one name.
+/// Name, E in Pa with its relative deviation, density in kg/m³ with its, Poisson's ratio. Deviations are
+/// those between alloys and tempers of one name.
 const TABLE: [(&str, f64, f64, f64, f64, f64); 11] = [
     ("steel", 2.07e11, 0.02, 7850.0, 0.005, 0.29),
     ("stainless", 1.95e11, 0.03, 7950.0, 0.01, 0.29),

@@ -4,7 +4,8 @@ use crate::value::{known, rounded, unknown};
 use crate::{Draft, DraftError};
 use serde_json::{Map, Value, json};
 
-/// Spreads named points evenly over bodies (name, from, to; m), in their order; places are placeholders that a fit leaves free.
+/// Spreads named points evenly over bodies (name, from, to; m), in their order; places are placeholders that
+/// a fit leaves free.
 pub(crate) fn spread(
     names: &[String],
     bodies: &[(String, f64, f64)],
@@ -73,7 +74,8 @@ pub(crate) fn put(
             between.push(name.as_str());
             continue;
         };
-        // A length that no body has, for the fixture to refuse, has ends in the wrong order, which `clamp` does not take.
+        // A length that no body has, for the fixture to refuse, has ends in the wrong order, which `clamp`
+        // does not take.
         let x = x.max(*from).min(*to);
         // A point at an end lies on it, however long the body is.
         let std = if x == *from || x == *to { 0.0 } else { draft.ruler };

@@ -51,8 +51,9 @@ impl Averaged {
     }
 }
 
-/// Variance E|ε|² of H1 on one line from the residuals of the hits, each with its own noise: Σ w²|X|²|Y − H X|²/(1 − h) / (Σ w|X|²)², h the hit's
-/// leverage. Where the noise of all hits is alike its mean is that of (1 − γ²)/((n − 1)γ²)·|H|², but it scatters more.
+/// Variance E|ε|² of H1 on one line from the residuals of the hits, each with its own noise: Σ w²|X|²|Y − H
+/// X|²/(1 − h) / (Σ w|X|²)², h the hit's leverage. Where the noise of all hits is alike its mean is that of
+/// (1 − γ²)/((n − 1)γ²)·|H|², but it scatters more.
 pub(crate) fn variance_of_unequal_hits(hits: &[Pair], weights: &[f64], line: usize) -> f64 {
     let sum = averaged(hits, weights, line);
     let Some(h1) = sum.frf(Estimator::H1) else { return 0.0 };
@@ -66,10 +67,11 @@ pub(crate) fn variance_of_unequal_hits(hits: &[Pair], weights: &[f64], line: usi
 
 /// How much each hit counts on the `lines` that the hammer excites.
 ///
-/// H1 of several hits is a least-squares line through the origin, response over force, and so is its variance from the coherence: both
-/// hold where the noise of all hits is alike. An analyser that adapts its range to each hit, or sensors whose error is a share of what
-/// they read, make the noise of a hard hit larger. Then spectra are divided by the noise of their hit: the noise σ_k² is what
-/// makes the residuals |Y_k − H·X_k|², relative to their mean over the hits on each line, as large as their leverage lets them be.
+/// H1 of several hits is a least-squares line through the origin, response over force, and so is its variance
+/// from the coherence: both hold where the noise of all hits is alike. An analyser that adapts its range to
+/// each hit, or sensors whose error is a share of what they read, make the noise of a hard hit larger. Then
+/// spectra are divided by the noise of their hit: the noise σ_k² is what makes the residuals |Y_k − H·X_k|²,
+/// relative to their mean over the hits on each line, as large as their leverage lets them be.
 ///
 /// Equal weights where the noise is alike, or cannot be told.
 pub(crate) fn weights_by_noise(hits: &[Pair], lines: std::ops::Range<usize>) -> Vec<f64> {

@@ -16,8 +16,8 @@ pub(crate) struct Drift {
 
 /// Takes off the baseline of a signal with so many samples `before` the hit; answers with its drift.
 ///
-/// An offset is the mean of those samples, if they are enough: what comes after has a mean of its own, H(0)·F(0), which is none. It shows on no line
-/// above 0 Hz but under a window.
+/// An offset is the mean of those samples, if they are enough: what comes after has a mean of its own,
+/// H(0)·F(0), which is none. It shows on no line above 0 Hz but under a window.
 pub(crate) fn remove(values: &mut [f64], baseline: Baseline, before: usize) -> Drift {
     let line = Line::through(values);
     match baseline {

@@ -23,7 +23,8 @@ pub(crate) struct Conditioned<'a> {
     pub force_drift: Drift,
 }
 
-/// The same hit with the baselines of its signals off, as the estimate takes them: for whatever else is made of hits.
+/// The same hit with the baselines of its signals off, as the estimate takes them: for whatever else is made
+/// of hits.
 pub fn without_baselines(hit: &Hit, baseline: Baseline) -> Hit {
     let Conditioned { force, responses, .. } = Conditioned::of(hit, baseline);
     let responses =
@@ -73,15 +74,17 @@ impl<'a> Conditioned<'a> {
         }
     }
 
-    /// Where the exponential window begins: before the onset, so that it holds all of what a filter makes of the pulse.
+    /// Where the exponential window begins: before the onset, so that it holds all of what a filter makes of
+    /// the pulse.
     fn window_begin(&self) -> usize {
         self.pulse.map_or(0, |pulse| pulse.begin.saturating_sub(FILTER_RINGING))
     }
 
     /// Takes the windowed spectra of the force and of every response, the latter as accelerations.
     ///
-    /// The exponential window lies on force and responses alike: e^(−δt) on both turns Y = H·X at s = iω into the same relation at
-    /// s = δ + iω, whatever the pulse's length. There an acceleration is s or s² times the velocity or displacement.
+    /// The exponential window lies on force and responses alike: e^(−δt) on both turns Y = H·X at s = iω into
+    /// the same relation at s = δ + iω, whatever the pulse's length. There an acceleration is s or s² times
+    /// the velocity or displacement.
     pub(crate) fn spectra(
         &self,
         transform: &mut Transform,

@@ -4,8 +4,8 @@ use crate::settings::ringing_left::{
     FEWEST_ON_LINE, FEWEST_SHOWN, NOISE_OVER_QUIETEST, PARTS, RINGING_SHOWS,
 };
 
-/// The amplitude left at the record's end relative to the loudest part, from the course of the power over the record. Where
-/// the ringing is lost in noise before the end it is continued as it last fell.
+/// The amplitude left at the record's end relative to the loudest part, from the course of the power over the
+/// record. Where the ringing is lost in noise before the end it is continued as it last fell.
 ///
 /// `begin` is the hit's onset, `noise` the power of the noise, if the samples before the hit tell it.
 pub(crate) fn left_at_end(values: &[f64], begin: usize, noise: Option<f64>) -> f64 {

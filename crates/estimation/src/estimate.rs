@@ -18,9 +18,10 @@ use crate::{
 /// FRFs of a hammer test, and what was seen on the way to them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
-    /// Accelerances of every response to every struck point, on all lines from 0 Hz to half the sampling rate, with coherence
-    /// and averages, and with variances where every struck point has two hits or more. On lines without force, and at 0 Hz, value and
-    /// coherence are zero. Responses come in the order of the hits, references under each.
+    /// Accelerances of every response to every struck point, on all lines from 0 Hz to half the sampling
+    /// rate, with coherence and averages, and with variances where every struck point has two hits or more.
+    /// On lines without force, and at 0 Hz, value and coherence are zero. Responses come in the order of the
+    /// hits, references under each.
     pub frfs: FrfSet,
     /// The hits, in the order they were given.
     pub hits: Vec<HitReport>,
@@ -63,8 +64,9 @@ impl Estimate {
         Ok(Estimate { frfs, hits: reports, excitations, decay, remarks: remarks.all })
     }
 
-    /// The FRFs on the lines above 0 Hz that the hammer excites at every struck point; under a window without the lowest ones, on which what is left of a baseline shows
-    /// and passes for something that holds the structure, or for AC coupling.
+    /// The FRFs on the lines above 0 Hz that the hammer excites at every struck point; under a window without
+    /// the lowest ones, on which what is left of a baseline shows and passes for something that holds the
+    /// structure, or for AC coupling.
     pub fn usable(&self) -> Option<FrfSet> {
         let to = self.excitations.iter().map(|e| e.usable_to).fold(f64::INFINITY, f64::min);
         let hz = self.frfs.lines().hz();
@@ -145,8 +147,9 @@ fn decay(used: &[&Conditioned], window: ResponseWindow) -> f64 {
     }
 }
 
-/// Neighbouring lines that tell as much about white noise as one line whose noise is its own, under a window of this decay per sample: the sum of the squared
-/// correlations of a line's noise with all others', L·∫e^(−4δt)/(∫e^(−2δt))² over the `samples` of a record in a transform of length L.
+/// Neighbouring lines that tell as much about white noise as one line whose noise is its own, under a window
+/// of this decay per sample: the sum of the squared correlations of a line's noise with all others',
+/// L·∫e^(−4δt)/(∫e^(−2δt))² over the `samples` of a record in a transform of length L.
 fn lines_alike(samples: usize, length: usize, decay: f64) -> f64 {
     let (samples, length) = (samples as f64, length as f64);
     let across = decay * samples;
@@ -233,7 +236,8 @@ impl<'a> Test<'a> {
                 pairs.push(FrfPair::new(sensor.channel.clone(), excitation.struck.clone()));
                 if found.averages > 1 {
                     let Found { values, variance, coherence, force, .. } = &found;
-                    // Two hits leave one degree of freedom a line, whose small values a wider fit follows: 1.48 in χ² in place of 1.23.
+                    // Two hits leave one degree of freedom a line, whose small values a wider fit follows:
+                    // 1.48 in χ² in place of 1.23.
                     let alike = if found.averages > 2 { self.alike } else { 1.0 };
                     variances.extend(smoothed(values, variance, coherence, force, alike));
                 }
@@ -301,8 +305,8 @@ impl<'a> Test<'a> {
         Some(found)
     }
 
-    /// Median over the lines of how much more power the residuals have than the noise before the hits explains; `None` where no
-    /// samples before the hits tell it.
+    /// Median over the lines of how much more power the residuals have than the noise before the hits
+    /// explains; `None` where no samples before the hits tell it.
     fn scatter_over_noise(&self, hits: &[(usize, usize)], weights: &[f64], sums: &[Averaged]) -> Option<f64> {
         let n = hits.len() as f64;
         let (mut response_noise, mut force_noise) = (0.0, 0.0);

@@ -1,7 +1,9 @@
 //! FRFs from hammer hits: spectra of force and responses, averaged over the hits at each struck point.
 //!
-//! * [`Estimate`]: H1, H2 or Hv of every response to every struck point, with coherence, averages and variances;
-//! * [`HitReport`], [`Fault`]: what was seen in each hit, and why one was rejected: double hits, overloads, records that start too late;
+//! * [`Estimate`]: H1, H2 or Hv of every response to every struck point, with coherence, averages and
+//!   variances;
+//! * [`HitReport`], [`Fault`]: what was seen in each hit, and why one was rejected: double hits, overloads,
+//!   records that start too late;
 //! * [`Excitation`]: what the hammer put in at a struck point, and up to which frequency;
 //! * [`EstimateOptions`]: estimator, weights, baselines, windows.
 //!
@@ -28,10 +30,11 @@
 //! ```
 //!
 //! # Windows
-//! An exponential window cannot be taken out of an FRF again: subtracting its decay from the damping of fitted modes is exact, but
-//! an FRF by line has none. It need not be taken out either. The window lies on force and responses alike, and then
-//! e^(−δt) turns Y = H·X at s = iω into the same relation at s = δ + iω: what is estimated is the structure's own FRF, read beside the
-//! imaginary axis. [`Estimate::decay`] states δ, and models read at that s compare without error (the effect `exponential_window`).
+//! An exponential window cannot be taken out of an FRF again: subtracting its decay from the damping of
+//! fitted modes is exact, but an FRF by line has none. It need not be taken out either. The window lies on
+//! force and responses alike, and then e^(−δt) turns Y = H·X at s = iω into the same relation at s = δ + iω:
+//! what is estimated is the structure's own FRF, read beside the imaginary axis. [`Estimate::decay`] states
+//! δ, and models read at that s compare without error (the effect `exponential_window`).
 
 mod average;
 mod band;

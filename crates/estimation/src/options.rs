@@ -1,4 +1,5 @@
-//! What the analyst chooses of an estimation: estimator, weights, baseline, windows, and hits to keep or leave out.
+//! What the analyst chooses of an estimation: estimator, weights, baseline, windows, and hits to keep or
+//! leave out.
 
 /// How an FRF follows from the spectra of force and response.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -26,8 +27,9 @@ impl Estimator {
 /// How much each hit counts in an average.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Weighting {
-    /// As its force, which is the textbook's average, unless the hits' noise differs: then each spectrum counts inversely to the power
-    /// of its noise, as their scatter about the average shows it. Three hits are needed to tell.
+    /// As its force, which is the textbook's average, unless the hits' noise differs: then each spectrum
+    /// counts inversely to the power of its noise, as their scatter about the average shows it. Three hits
+    /// are needed to tell.
     #[default]
     Auto,
     /// As its force.
@@ -37,7 +39,8 @@ pub enum Weighting {
 /// What is taken off every signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Baseline {
-    /// A constant: the mean before the hit, or, without enough samples there, of those that neither hit nor ringing moves far.
+    /// A constant: the mean before the hit, or, without enough samples there, of those that neither hit nor
+    /// ringing moves far.
     #[default]
     Offset,
     /// A straight line through the samples that neither the hit nor the ringing moves far.
@@ -46,7 +49,8 @@ pub enum Baseline {
     Keep,
 }
 
-/// The window over the force: 1 up to its length after the hit's onset, then a quarter of that as half a cosine to 0.
+/// The window over the force: 1 up to its length after the hit's onset, then a quarter of that as half a
+/// cosine to 0.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum ForceWindow {
     /// None.
@@ -70,7 +74,8 @@ pub enum ResponseWindow {
     Decay(f64),
 }
 
-/// How FRFs are made of hits. The default is the textbook's: H1, no windows, no zero padding, constants taken off.
+/// How FRFs are made of hits. The default is the textbook's: H1, no windows, no zero padding, constants taken
+/// off.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct EstimateOptions {
     /// H1, H2 or Hv.

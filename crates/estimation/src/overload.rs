@@ -4,8 +4,8 @@ use crate::settings::overload::{
     EXTREME_SHARE, FINEST_STEP, FLANK_STEPS, HELD_SAMPLES, OFF_THE_GRID, SAMPLES_LOOKED_AT,
 };
 
-/// The value at which a signal is cut off, if it is: its extreme held for three samples or more, with steep flanks, so that no
-/// smooth top read by a coarse converter is meant.
+/// The value at which a signal is cut off, if it is: its extreme held for three samples or more, with steep
+/// flanks, so that no smooth top read by a coarse converter is meant.
 ///
 /// What was cut off before an anti-alias filter is round again and cannot be seen.
 pub(crate) fn is_cut_off(values: &[f64]) -> Option<f64> {
@@ -34,7 +34,8 @@ pub(crate) fn is_cut_off(values: &[f64]) -> Option<f64> {
     )
 }
 
-/// The step of the converter, as far as a sample of the values shows it: the smallest distance between two, if all others are multiples of it.
+/// The step of the converter, as far as a sample of the values shows it: the smallest distance between two,
+/// if all others are multiples of it.
 fn converter_step(values: &[f64]) -> f64 {
     let mut sorted: Vec<f64> = values.iter().copied().take(SAMPLES_LOOKED_AT).collect();
     sorted.sort_unstable_by(f64::total_cmp);

@@ -34,7 +34,8 @@ pub(crate) fn implausible(frfs: &FrfSet, excitations: &[Excitation]) -> Vec<Rema
     remarks
 }
 
-/// Whether most of a driving point's accelerance lies below the real axis: the power that a force puts in is ½|F|² Re(A/iω) = ½|F|² Im A/ω.
+/// Whether most of a driving point's accelerance lies below the real axis: the power that a force puts in is
+/// ½|F|² Re(A/iω) = ½|F|² Im A/ω.
 fn takes_energy_out(values: &[Complex64]) -> bool {
     let (mut out, mut all) = (0.0, 0.0);
     for value in values {

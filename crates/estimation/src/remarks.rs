@@ -173,8 +173,8 @@ impl Remarks {
     }
 }
 
-/// Whether a drift makes up a tenth of the first line: a straight line over n samples has n/2π times its rise there, a pulse about the sum of
-/// its samples.
+/// Whether a drift makes up a tenth of the first line: a straight line over n samples has n/2π times its rise
+/// there, a pulse about the sum of its samples.
 fn shows(drift: &Drift, values: &[f64]) -> bool {
     let first_line = drift.over_record.abs() * values.len() as f64 / std::f64::consts::TAU;
     let peak = values.iter().map(|v| v.abs()).fold(0.0, f64::max);

@@ -47,7 +47,8 @@ pub struct Excitation {
     pub spectrum: Vec<f64>,
     /// Root mean square of what the force's noise contributes to it, N·s.
     pub noise: f64,
-    /// Highest frequency up to which the spectrum stays within 20 dB of its largest, and within 0.8 of half the sampling rate, Hz.
+    /// Highest frequency up to which the spectrum stays within 20 dB of its largest, and within 0.8 of half
+    /// the sampling rate, Hz.
     pub usable_to: f64,
     /// Largest relative amount, over the lines from there down, by which H1 reads low for the force's noise.
     pub h1_bias: f64,

@@ -1,6 +1,8 @@
-//! Every tuned number of the estimation of FRFs from hits, with the reason for it where there is one to state, by the question that it decides.
+//! Every tuned number of the estimation of FRFs from hits, with the reason for it where there is one to
+//! state, by the question that it decides.
 //!
-//! Guards against rounding, and factors that follow from the normal distribution or from a window's form, stand where they are used.
+//! Guards against rounding, and factors that follow from the normal distribution or from a window's form,
+//! stand where they are used.
 
 /// Hits that an estimate is made of.
 pub(crate) mod hits {
@@ -64,7 +66,8 @@ pub(crate) mod overload {
 pub(crate) mod faults {
     /// A later strike below this share of the first does no harm that the noise does not.
     pub(crate) const SECOND_STRIKE: f64 = 0.05;
-    /// A strike is one-sided; what swings to the other side as far is a filter's ringing. Ratio of the peak to the other side.
+    /// A strike is one-sided; what swings to the other side as far is a filter's ringing. Ratio of the peak
+    /// to the other side.
     pub(crate) const ONE_SIDED: f64 = 1.5;
     /// Between two strikes the force falls below this share of the lower peak.
     pub(crate) const VALLEY: f64 = 0.7;
@@ -72,7 +75,8 @@ pub(crate) mod faults {
     pub(crate) const STANDS_OUT: f64 = 10.0;
     /// A response is a hammer's pulse that stands out by so many times as much.
     pub(crate) const RESPONSE_STANDS_OUT: f64 = 5.0;
-    /// Times the share of the peak at which a pulse begins, from which the first sample shows the hammer in contact.
+    /// Times the share of the peak at which a pulse begins, from which the first sample shows the hammer in
+    /// contact.
     pub(crate) const IN_CONTACT: f64 = 2.0;
     /// Energy to the other side, relative to that to the peak's side, above which a signal rings.
     pub(crate) const TO_AND_FRO: f64 = 0.3;
@@ -80,7 +84,8 @@ pub(crate) mod faults {
 
 /// Windows on demand.
 pub(crate) mod windows {
-    /// Widths of the pulse from its onset that the force's window passes: the pulse, and ten of them after it.
+    /// Widths of the pulse from its onset that the force's window passes: the pulse, and ten of them after
+    /// it.
     pub(crate) const FORCE_WINDOW_WIDTHS: usize = 11;
     /// Part of its length in which it then falls to zero: a quarter.
     pub(crate) const TAPER_PARTS: usize = 4;
@@ -120,7 +125,8 @@ pub(crate) mod weights {
     pub(crate) const SETTLED: f64 = 1e-3;
     /// Noise of two hits differs by no more than this, or it is not noise.
     pub(crate) const MOST_RATIO: f64 = 1e4;
-    /// What the leverage of a hit leaves its residuals of freedom, at the least: the stronger of two very unequal hits has next to none.
+    /// What the leverage of a hit leaves its residuals of freedom, at the least: the stronger of two very
+    /// unequal hits has next to none.
     pub(crate) const LEAST_FREEDOM: f64 = 1e-3;
 }
 
@@ -136,13 +142,15 @@ pub(crate) mod remarks {
     pub(crate) const PULSE: f64 = 0.1;
     /// Ringing before a hit relative to its loudest response.
     pub(crate) const RINGS_BEFORE: f64 = 0.01;
-    /// Power before the hit over that before the quietest one, beyond which it rings: what is there before every hit is noise.
+    /// Power before the hit over that before the quietest one, beyond which it rings: what is there before
+    /// every hit is noise.
     pub(crate) const RINGS_OVER_QUIETEST: f64 = 9.0;
     /// Ratio of powers from which hits disagree by more than their noise.
     pub(crate) const DISAGREE: f64 = 4.0;
     /// Bias of H1 that is worth a word.
     pub(crate) const BIASED: f64 = 1e-3;
-    /// Share of the driving point's |H|² on lines where the force takes energy out, beyond which a sign is wrong.
+    /// Share of the driving point's |H|² on lines where the force takes energy out, beyond which a sign is
+    /// wrong.
     pub(crate) const TAKES_OUT: f64 = 0.7;
     /// Relative difference of two FRFs that should be the same.
     pub(crate) const NOT_RECIPROCAL: f64 = 0.3;

@@ -1,4 +1,5 @@
-//! Keywords for Abaqus/Standard: linear user elements, or matrices of the model; masses, springs and dashpots.
+//! Keywords for Abaqus/Standard: linear user elements, or matrices of the model; masses, springs and
+//! dashpots.
 
 use crate::Form;
 use crate::body::Body;

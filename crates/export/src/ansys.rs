@@ -7,7 +7,8 @@ use crate::numbers::exact;
 use crate::parts::{Element, dof_number};
 use jointscope_beam::Matrix4;
 
-/// Where y and θ of the two nodes stand among the twelve degrees of freedom UX, UY, UZ, ROTX, ROTY, ROTZ of node I, then of node J.
+/// Where y and θ of the two nodes stand among the twelve degrees of freedom UX, UY, UZ, ROTX, ROTY, ROTZ of
+/// node I, then of node J.
 const PLACES: [usize; 4] = [1, 5, 7, 11];
 /// Real constants a command takes.
 const ON_A_LINE: usize = 6;

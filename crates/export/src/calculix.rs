@@ -1,8 +1,10 @@
-//! Keywords for CalculiX: springs and dashpots to ground on motions that equations make of those of the joint's ends.
+//! Keywords for CalculiX: springs and dashpots to ground on motions that equations make of those of the
+//! joint's ends.
 //!
-//! CalculiX has neither rotational springs nor matrices of a user. Its nodes have three translations, and a rigid body has its rotations as the
-//! translations of a ROT NODE. K = k11·v·vᵀ + k·w·wᵀ with v = (1, a) and w = (0, 1), a the place of the elastic centre: each term is a spring on one
-//! motion, which is the x of an added node.
+//! CalculiX has neither rotational springs nor matrices of a user. Its nodes have three translations, and a
+//! rigid body has its rotations as the translations of a ROT NODE. K = k11·v·vᵀ + k·w·wᵀ with v = (1, a) and
+//! w = (0, 1), a the place of the elastic centre: each term is a spring on one motion, which is the x of an
+//! added node.
 
 use crate::body::Body;
 use crate::joint::{ElasticCentre, is_zero};
@@ -152,7 +154,8 @@ impl Writer {
         }
     }
 
-    /// A spring or dashpot on a motion: an added node makes the motion along x, the element leads on to a fixed one.
+    /// A spring or dashpot on a motion: an added node makes the motion along x, the element leads on to a
+    /// fixed one.
     fn grounded(&mut self, element: &str, motion: Terms, value: f64) {
         if value == 0.0 {
             return;

@@ -8,11 +8,13 @@ use jointscope_beam::mass_of_ends;
 use jointscope_comparison::{Decomposed, Ends, FiledJoint, FiledTests, Matrix, Uncertain};
 use std::collections::BTreeMap;
 
-/// All joints of a decomposition, or the one that the options name; where joints meet at a point they share its node. Each is the joint with the fixture's
-/// quantities moving where the file has it, otherwise the maximum-likelihood one.
+/// All joints of a decomposition, or the one that the options name; where joints meet at a point they share
+/// its node. Each is the joint with the fixture's quantities moving where the file has it, otherwise the
+/// maximum-likelihood one.
 ///
 /// # Errors
-/// A file that does not say where its joint acts, an estimate judged unusable, numbers that cannot be, node numbers for more than one joint.
+/// A file that does not say where its joint acts, an estimate judged unusable, numbers that cannot be, node
+/// numbers for more than one joint.
 pub fn of_decompositions(decomposed: &[Decomposed], options: &ExportOptions) -> Result<Export, ExportError> {
     let names = |all: &[&Decomposed]| all.iter().map(|one| one.joint.as_str()).collect::<Vec<_>>().join(", ");
     let is_wanted = |one: &&Decomposed| options.joint.as_ref().is_none_or(|name| *name == one.joint);

@@ -1,4 +1,5 @@
-//! What a diagnosis found: the repaired fixture's joints, supports and effects, with what `diagnosis.json` says of their uncertainty.
+//! What a diagnosis found: the repaired fixture's joints, supports and effects, with what `diagnosis.json`
+//! says of their uncertainty.
 
 mod entry;
 mod nodes;

@@ -1,4 +1,5 @@
-//! What stands at the top of every file: origin, units, axes, nodes, matrices with their uncertainty, what is left out.
+//! What stands at the top of every file: origin, units, axes, nodes, matrices with their uncertainty, what is
+//! left out.
 
 use crate::numbers::short;
 use crate::{Export, Joint};

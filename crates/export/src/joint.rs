@@ -1,4 +1,5 @@
-//! The matrices of a joint: its elastic centre, its 4×4 form on both ends, what its uncertainty leaves of them.
+//! The matrices of a joint: its elastic centre, its 4×4 form on both ends, what its uncertainty leaves of
+//! them.
 
 use jointscope_beam::{Matrix4, from_end_stiffness};
 use jointscope_comparison::Matrix;
@@ -25,7 +26,8 @@ pub struct JointNode {
 /// Covariance of k11, k12, k22, c11, c12, c22.
 pub type Covariance = [[f64; 6]; 6];
 
-/// A joint between two nodes: matrices on d = u_to − R·u_from, u = (y, θ), R = [[1, L], [0, 1]], at the far end, SI.
+/// A joint between two nodes: matrices on d = u_to − R·u_from, u = (y, θ), R = [[1, L], [0, 1]], at the far
+/// end, SI.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joint {
     /// Its name.
@@ -186,7 +188,8 @@ impl Joint {
         (s12 - centre.offset * s11).abs() <= ROUNDING * scale
     }
 
-    /// Standard deviation of a function of K and C with this gradient; without a covariance as if their errors were independent.
+    /// Standard deviation of a function of K and C with this gradient; without a covariance as if their
+    /// errors were independent.
     fn propagated(&self, gradient: &[f64; 6]) -> Option<f64> {
         if let Some(covariance) = &self.covariance {
             let product = |row: &[f64; 6]| row.iter().zip(gradient).map(|(c, g)| c * g).sum::<f64>();

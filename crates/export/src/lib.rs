@@ -1,11 +1,13 @@
-//! What was found, for a finite-element model: the joint of a decomposition, or what the repaired fixture of a diagnosis has in it, as elements of
-//! Nastran, ANSYS, Abaqus and CalculiX, or as plain matrices.
+//! What was found, for a finite-element model: the joint of a decomposition, or what the repaired fixture of
+//! a diagnosis has in it, as elements of Nastran, ANSYS, Abaqus and CalculiX, or as plain matrices.
 //!
-//! * [`of_decompositions`], [`of_diagnosis`]: an [`Export`] of what `stiffness.json`, or `diagnosis.json` and `repaired.json`, hold;
+//! * [`of_decompositions`], [`of_diagnosis`]: an [`Export`] of what `stiffness.json`, or `diagnosis.json` and
+//!   `repaired.json`, hold;
 //! * [`Joint`]: matrices on d = u_to − R·u_from, their [`ElasticCentre`], their 4×4 form on [`both_ends`];
 //! * [`write()`]: the text for a [`Program`].
 //!
-//! Axes: x along the joint, y transverse (degree of freedom 2), θ about z (degree of freedom 6), positive from x to y. SI units.
+//! Axes: x along the joint, y transverse (degree of freedom 2), θ about z (degree of freedom 6), positive
+//! from x to y. SI units.
 //!
 //! The elastic centre of a beam lies at its middle, where a force does not turn the far end:
 //!

@@ -1,4 +1,5 @@
-//! Bulk data for Nastran: CBUSH about the elastic centre, or DMIG on both nodes; large fields of 16 characters.
+//! Bulk data for Nastran: CBUSH about the elastic centre, or DMIG on both nodes; large fields of 16
+//! characters.
 
 use crate::Form;
 use crate::body::Body;

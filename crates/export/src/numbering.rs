@@ -2,7 +2,8 @@
 
 use crate::{ExportError, Node};
 
-/// The largest number of a node: programs read eight digits, and what is added beyond the nodes needs numbers too.
+/// The largest number of a node: programs read eight digits, and what is added beyond the nodes needs numbers
+/// too.
 const LARGEST: u64 = 99_000_000;
 
 /// Numbers given so far.

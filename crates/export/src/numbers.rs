@@ -23,7 +23,8 @@ pub(crate) fn short(value: f64) -> String {
     }
 }
 
-/// As many digits as 16 characters hold, at least ten where its power has two digits, with the sign of its power in place of the letter E: a real number of Nastran's large field.
+/// As many digits as 16 characters hold, at least ten where its power has two digits, with the sign of its
+/// power in place of the letter E: a real number of Nastran's large field.
 pub(crate) fn nastran(value: f64) -> String {
     fitted(value, 16, "")
 }
@@ -33,8 +34,8 @@ pub(crate) fn nastran_double(value: f64) -> String {
     fitted(value, 16, "D")
 }
 
-/// As many digits as 20 characters hold: what Abaqus and CalculiX read. It always has a decimal point, without which CalculiX takes it for a degree of
-/// freedom.
+/// As many digits as 20 characters hold: what Abaqus and CalculiX read. It always has a decimal point,
+/// without which CalculiX takes it for a degree of freedom.
 pub(crate) fn twenty(value: f64) -> String {
     fitted(value, 20, "E")
 }

@@ -10,7 +10,8 @@ use jointscope_lumped::{Delta, JointElement};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Where a joint does not depend on frequency: its derivative with respect to s is read here, rad/s, without cancellation since it is imaginary.
+/// Where a joint does not depend on frequency: its derivative with respect to s is read here, rad/s, without
+/// cancellation since it is imaginary.
 const NEAR_ZERO: f64 = 1e-6;
 /// Share of the stiffness that inertia makes where the mass is read.
 const INERTIA: f64 = 1e-2;
@@ -103,7 +104,8 @@ impl<'a> RepairedJoint<'a> {
         (stiffness, damping, structural)
     }
 
-    /// Mass on both ends: half the second derivative of the dynamic stiffness with respect to s, at rest, with what is elastic alone.
+    /// Mass on both ends: half the second derivative of the dynamic stiffness with respect to s, at rest,
+    /// with what is elastic alone.
     fn mass(&self) -> Result<Option<Matrix4>, FixtureError> {
         let total: f64 =
             self.effects.iter().filter(|e| e.kind == Kind::JointMass).map(|effect| effect.value(0)).sum();

@@ -17,7 +17,8 @@ pub struct Matrices {
 }
 
 impl Matrices {
-    /// Assembles a mesh. Held are displacements across the plane z = 0 of a mesh cut there, and what `held` says of (node's place, direction).
+    /// Assembles a mesh. Held are displacements across the plane z = 0 of a mesh cut there, and what `held`
+    /// says of (node's place, direction).
     ///
     /// # Errors
     /// An element with a Jacobian that is not positive.
@@ -64,7 +65,8 @@ impl Matrices {
         self.equations.iter().map(|equation| equation.map_or(0.0, |e| vector[e])).collect()
     }
 
-    /// The functional that reads the transverse displacement (or the slope ∂v/∂x) of `part` at (x, y, 0), as (equation, weight).
+    /// The functional that reads the transverse displacement (or the slope ∂v/∂x) of `part` at (x, y, 0), as
+    /// (equation, weight).
     pub fn observation(
         &self,
         mesh: &Mesh,
@@ -84,8 +86,9 @@ impl Matrices {
         Some(entries.filter_map(|(node, weight)| Some((self.equations[3 * node + 1]?, weight))).collect())
     }
 
-    /// Strain energy of a displacement field over its kinetic energy at 1 rad/s: its eigenvalue by Rayleigh's quotient, (rad/s)², the
-    /// strains taken element by element so that rigid motions come out as what they are.
+    /// Strain energy of a displacement field over its kinetic energy at 1 rad/s: its eigenvalue by Rayleigh's
+    /// quotient, (rad/s)², the strains taken element by element so that rigid motions come out as what they
+    /// are.
     pub fn rayleigh_quotient(&self, mesh: &Mesh, vector: &[f64]) -> f64 {
         let displacement = self.displacements(vector);
         let mut energy = 0.0;
@@ -102,7 +105,8 @@ impl Matrices {
     }
 }
 
-/// Motions without strain of each connected piece: u, v and the rotation in the plane; w and the other rotations where the depth is whole.
+/// Motions without strain of each connected piece: u, v and the rotation in the plane; w and the other
+/// rotations where the depth is whole.
 fn rigid_motions(mesh: &Mesh, equations: &[Option<usize>], order: usize) -> Vec<Vec<f64>> {
     let pieces = pieces(mesh);
     let motions: &[usize] = if mesh.whole { &[0, 1, 2, 3, 4, 5] } else { &[0, 1, 5] };

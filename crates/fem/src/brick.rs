@@ -6,8 +6,8 @@ pub(crate) const NODES: usize = 20;
 /// Equations of an element: three displacements a node, node after node.
 pub(crate) const EQUATIONS: usize = 3 * NODES;
 
-/// Natural coordinates of the nodes: corners of the lower face, of the upper face, midsides of the lower face, of the upper face, of the
-/// upright edges. This is the order of Abaqus' and CalculiX' C3D20.
+/// Natural coordinates of the nodes: corners of the lower face, of the upper face, midsides of the lower
+/// face, of the upper face, of the upright edges. This is the order of Abaqus' and CalculiX' C3D20.
 pub(crate) const NATURAL: [[f64; 3]; NODES] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
@@ -95,7 +95,8 @@ const GAUSS: [(f64, f64); 3] =
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Degenerate;
 
-/// Gradients ∂N_i/∂x_a of the shape functions in space, and the Jacobian's determinant (m³ per natural volume).
+/// Gradients ∂N_i/∂x_a of the shape functions in space, and the Jacobian's determinant (m³ per natural
+/// volume).
 pub(crate) fn gradient_in_space(
     nodes: &[[f64; 3]; NODES],
     at: [f64; 3],
@@ -124,7 +125,8 @@ pub(crate) fn gradient_in_space(
     Ok((gradients, determinant))
 }
 
-/// Stiffness and consistent mass of an element with these nodes, row-major of order [`EQUATIONS`], by 3×3×3 Gauss points.
+/// Stiffness and consistent mass of an element with these nodes, row-major of order [`EQUATIONS`], by 3×3×3
+/// Gauss points.
 pub(crate) fn matrices(
     nodes: &[[f64; 3]; NODES],
     material: &Elasticity,
@@ -177,8 +179,8 @@ pub(crate) fn matrices(
     Ok((stiffness, full_mass))
 }
 
-/// Strain energy (twice, J) of a displacement field given node by node, from the strains at the Gauss points: a rigid motion has none but
-/// for rounding squared, where the element's matrix would leave rounding itself.
+/// Strain energy (twice, J) of a displacement field given node by node, from the strains at the Gauss points:
+/// a rigid motion has none but for rounding squared, where the element's matrix would leave rounding itself.
 pub(crate) fn strain_energy(
     nodes: &[[f64; 3]; NODES],
     material: &Elasticity,

@@ -3,7 +3,8 @@
 use crate::Mesh;
 use std::fmt::Write;
 
-/// The mesh as an input deck for CalculiX or Abaqus: its `modes` lowest frequencies, so that somebody else's program can check ours.
+/// The mesh as an input deck for CalculiX or Abaqus: its `modes` lowest frequencies, so that somebody else's
+/// program can check ours.
 pub fn calculix_deck(mesh: &Mesh, title: &str, modes: usize) -> String {
     let mut deck = String::with_capacity(120 * mesh.nodes.len());
     // Writing to a String does not fail.

@@ -9,7 +9,8 @@ pub(crate) struct Ends {
     pub end: Option<f64>,
 }
 
-/// Inner lines of an interval, ascending, its ends left out. Elements grow by `growth` from the fine ends and never exceed `longest` (m) by much.
+/// Inner lines of an interval, ascending, its ends left out. Elements grow by `growth` from the fine ends and
+/// never exceed `longest` (m) by much.
 pub(crate) fn divide(from: f64, to: f64, ends: Ends, growth: f64, longest: f64) -> Vec<f64> {
     let length = to - from;
     let longest = longest.min(length);

@@ -1,14 +1,18 @@
-//! The finite-element twin of a fixture: the assembly as a deformable solid, its modes, and the FRFs of its points.
+//! The finite-element twin of a fixture: the assembly as a deformable solid, its modes, and the FRFs of its
+//! points.
 //!
-//! The lumped model knows rigid blocks and a massless beam. The twin is built of what the fixture file says under `geometry`: boxes for
-//! bodies, strips for joints, layers of weld or glue between them, meshed with 20-node bricks whose quadratic shape functions bend
-//! without locking. What it shows beyond the lumped model is what that leaves out: the joint's mass and shear, plate action across its
-//! width, the blocks' own flexibility and that of the strip's footing in them.
+//! The lumped model knows rigid blocks and a massless beam. The twin is built of what the fixture file says
+//! under `geometry`: boxes for bodies, strips for joints, layers of weld or glue between them, meshed with
+//! 20-node bricks whose quadratic shape functions bend without locking. What it shows beyond the lumped model
+//! is what that leaves out: the joint's mass and shear, plate action across its width, the blocks' own
+//! flexibility and that of the strip's footing in them.
 //!
-//! * [`Mesh`]: bricks graded away from the strips, over half the depth (the assembly is symmetric) or the whole;
+//! * [`Mesh`]: bricks graded away from the strips, over half the depth (the assembly is symmetric) or the
+//!   whole;
 //! * [`Matrices`]: mass and stiffness over the free equations, and the motions that strain nothing;
 //! * [`Twin`]: the lowest modes by shift-invert Lanczos, rigid motions held at exactly zero;
-//! * [`Twin::frfs`]: mode superposition with the fixture's damping and a chosen number of modes ([`Superposition`]), supports and point masses;
+//! * [`Twin::frfs`]: mode superposition with the fixture's damping and a chosen number of modes
+//!   ([`Superposition`]), supports and point masses;
 //! * [`Twin::deflections`]: what forces in equilibrium do to it statically;
 //! * [`calculix_deck`]: the mesh for somebody else's program.
 //!
@@ -45,7 +49,8 @@ pub use twin::{ModeKind, ModeRange, Progress, Twin};
 /// How fine the mesh is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshOptions {
-    /// Elements along the edges where a strip meets its blocks are its thickness over this: there the stress is singular.
+    /// Elements along the edges where a strip meets its blocks are its thickness over this: there the stress
+    /// is singular.
     pub corner: usize,
     /// A strip's elements are no longer than its length over this.
     pub along: usize,

@@ -19,7 +19,8 @@ pub enum BrickOwner {
 /// A brick of the mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Brick {
-    /// Its nodes: corners of the lower face, of the upper face, then midsides below, above and upright, as in the C3D20 of CalculiX.
+    /// Its nodes: corners of the lower face, of the upper face, then midsides below, above and upright, as in
+    /// the C3D20 of CalculiX.
     pub nodes: [usize; NODES],
     /// Index of its material.
     pub material: usize,
@@ -151,7 +152,8 @@ impl Mesh {
         element.nodes.map(|node| self.nodes[node])
     }
 
-    /// The element of `part` at (x, y, 0), and where it is in natural coordinates; the nearest one for a place outside.
+    /// The element of `part` at (x, y, 0), and where it is in natural coordinates; the nearest one for a
+    /// place outside.
     pub fn locate(&self, part: BrickOwner, x: f64, y: f64) -> Option<(usize, [f64; 3])> {
         let mut best: Option<(f64, usize, [f64; 3])> = None;
         for (index, element) in self.elements.iter().enumerate().filter(|(_, e)| e.part == part) {
@@ -168,7 +170,8 @@ impl Mesh {
     }
 }
 
-/// Speed of sound in a material at the most, m/s, fifty times that of diamond: above, the modes lose their digits.
+/// Speed of sound in a material at the most, m/s, fifty times that of diamond: above, the modes lose their
+/// digits.
 const FASTEST: f64 = 1e6;
 
 /// More elements than any machine here factorises.
@@ -211,7 +214,8 @@ fn strip_ends(fixture: &Fixture, geometry: &Geometry, joint: usize) -> [f64; 2] 
     [body(joint.from).to.value, body(joint.to).from.value]
 }
 
-/// Divides between `stops`; `fine` gives the element size at a stop, where it is to be small, `longest` the largest size of an interval.
+/// Divides between `stops`; `fine` gives the element size at a stop, where it is to be small, `longest` the
+/// largest size of an interval.
 fn lines(
     stops: Vec<f64>,
     fine: impl Fn(f64) -> Option<f64>,
@@ -280,7 +284,8 @@ fn y_lines(geometry: &Geometry, options: &MeshOptions) -> Vec<f64> {
             |(faces, _): &&([f64; 2], f64)| faces.iter().any(|f| (f - y).abs() < 1e-9 * (1.0 + y.abs()));
         strips.iter().filter(touches).map(|(_, size)| *size).reduce(f64::min)
     };
-    // Bending is cubic along the strip and linear through it: an element or two through the thickness are enough for that.
+    // Bending is cubic along the strip and linear through it: an element or two through the thickness are
+    // enough for that.
     let longest = |from: f64, to: f64| 0.5 * (to - from);
     lines(stops, near, longest, options.growth)
 }

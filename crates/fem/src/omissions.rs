@@ -2,22 +2,24 @@
 
 use crate::{BrickOwner, Mesh};
 
-/// What the lumped model leaves out, switched off in the solid: one at a time it shows what each is worth, all together the twin is the
-/// lumped model.
+/// What the lumped model leaves out, switched off in the solid: one at a time it shows what each is worth,
+/// all together the twin is the lumped model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Omissions {
     /// Strips and layers weigh next to nothing.
     pub joint_mass: bool,
     /// Strips and layers do not shear in the plane of bending.
     pub shear: bool,
-    /// Strips and layers have a Poisson's ratio of zero: no bending across the width, nothing for the blocks to restrain there.
+    /// Strips and layers have a Poisson's ratio of zero: no bending across the width, nothing for the blocks
+    /// to restrain there.
     pub plate_action: bool,
     /// Blocks are all but rigid, and with them the strips' footing.
     pub block_flexibility: bool,
 }
 
-/// How much less a strip weighs, how much less it shears and how much stiffer a block is: a hundredth of each effect stays. Further apart
-/// the masses and stiffnesses of neighbouring elements would cost the factor its digits.
+/// How much less a strip weighs, how much less it shears and how much stiffer a block is: a hundredth of each
+/// effect stays. Further apart the masses and stiffnesses of neighbouring elements would cost the factor its
+/// digits.
 const SMALL: f64 = 1e-2;
 const LARGE: f64 = 1e2;
 

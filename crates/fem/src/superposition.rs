@@ -18,7 +18,8 @@ pub enum Superposition {
     First(usize),
 }
 
-/// Terms of the residual's power series: with modes up to twice the last line the next would be a sixty-fourth of the first.
+/// Terms of the residual's power series: with modes up to twice the last line the next would be a
+/// sixty-fourth of the first.
 const RESIDUAL_TERMS: usize = 3;
 
 /// Accelerances stand in for their limit at 0 Hz by their value this close to it.
@@ -49,10 +50,11 @@ impl Functionals {
 }
 
 impl Twin {
-    /// Accelerances between the channels of `pairs` by mode superposition, with the fixture's damping, supports and point masses.
+    /// Accelerances between the channels of `pairs` by mode superposition, with the fixture's damping,
+    /// supports and point masses.
     ///
-    /// Modal damping ratios belong to the transverse modes in ascending frequency; other modes take the ratio of the transverse one before
-    /// them. At 0 Hz the value is the limit.
+    /// Modal damping ratios belong to the transverse modes in ascending frequency; other modes take the ratio
+    /// of the transverse one before them. At 0 Hz the value is the limit.
     ///
     /// # Errors
     /// Unknown points, or an undamped resonance on a line.
@@ -92,10 +94,12 @@ impl Twin {
         Ok(FrfSet::new(lines.clone(), FrfForm::Accelerance, pairs.to_vec(), values)?)
     }
 
-    /// Static transverse displacements (m) of bodies at abscissae under transverse forces (N) that are in equilibrium, each at a body and an
-    /// abscissa; without supports and point masses, and but for a rigid motion.
+    /// Static transverse displacements (m) of bodies at abscissae under transverse forces (N) that are in
+    /// equilibrium, each at a body and an abscissa; without supports and point masses, and but for a rigid
+    /// motion.
     ///
-    /// Forces in equilibrium move no rigid motion, so that u = Σ φ(φᵀf)/λ over the elastic modes, those beyond the ones that were found included.
+    /// Forces in equilibrium move no rigid motion, so that u = Σ φ(φᵀf)/λ over the elastic modes, those
+    /// beyond the ones that were found included.
     ///
     /// # Errors
     /// A fixture without `geometry`.
@@ -183,7 +187,8 @@ impl Twin {
     }
 }
 
-/// Receptances between functionals as sums over modes: (eigenvalue, damping, value of each functional), and the residual's terms.
+/// Receptances between functionals as sums over modes: (eigenvalue, damping, value of each functional), and
+/// the residual's terms.
 struct ModalSystem {
     size: usize,
     modes: Vec<(f64, ModeDamping, Vec<f64>)>,
@@ -193,7 +198,8 @@ struct ModalSystem {
 
 impl ModalSystem {
     fn of(twin: &Twin, rows: &[Vec<(usize, f64)>], superposition: Superposition) -> Self {
-        // Half a model carries half of a force on the plane of symmetry: its modes weigh half as much as the whole's.
+        // Half a model carries half of a force on the plane of symmetry: its modes weigh half as much as the
+        // whole's.
         let half = if twin.mesh.whole { 1.0 } else { 0.5_f64.sqrt() };
         let of_shape = |shape: &[f64]| rows.iter().map(|row| half * read(row, shape)).collect::<Vec<f64>>();
         let rigid_damping = match twin.fixture.damping() {

@@ -71,7 +71,8 @@ impl Twin {
         Self::of_mesh(fixture, mesh, range, progress)
     }
 
-    /// Finds the modes of a mesh of the fixture's geometry, whose materials may have been changed since [`Mesh::of`] made it.
+    /// Finds the modes of a mesh of the fixture's geometry, whose materials may have been changed since
+    /// [`Mesh::of`] made it.
     ///
     /// # Errors
     /// See [`FemError`].
@@ -120,7 +121,8 @@ impl Twin {
         Ok(self.modes.shapes.iter().map(kind).collect())
     }
 
-    /// Counts the modes of the mesh below a frequency just above the last one anew, and compares with those at hand, as was done when they were found.
+    /// Counts the modes of the mesh below a frequency just above the last one anew, and compares with those
+    /// at hand, as was done when they were found.
     ///
     /// # Errors
     /// A mode that is missing, or no certain count.
@@ -145,14 +147,16 @@ impl Twin {
         self.matrices.mass.quadratic(&unit) * if self.mesh.whole { 1.0 } else { 2.0 }
     }
 
-    /// Largest frequency that a rigid motion shows in the strains of the mesh, relative to the first elastic mode's: zero but for rounding.
+    /// Largest frequency that a rigid motion shows in the strains of the mesh, relative to the first elastic
+    /// mode's: zero but for rounding.
     pub fn rigid_frequency(&self) -> f64 {
         let first = self.modes.eigenvalues.first().copied().unwrap_or(f64::INFINITY);
         let quotient = |motion: &Vec<f64>| self.matrices.rayleigh_quotient(&self.mesh, motion).abs();
         (self.modes.rigid.iter().map(quotient).fold(0.0, f64::max) / first).sqrt()
     }
 
-    /// What reads the transverse motion (or slope) of a fixture's point, on the upper face of its body unless `geometry` says otherwise.
+    /// What reads the transverse motion (or slope) of a fixture's point, on the upper face of its body unless
+    /// `geometry` says otherwise.
     pub(crate) fn point(&self, index: usize, slope: bool) -> Result<Vec<(usize, f64)>, FemError> {
         let point = &self.fixture.points()[index];
         let geometry = self.fixture.geometry().ok_or(FemError::NoGeometry)?;
@@ -173,8 +177,8 @@ impl Twin {
         self.matrices.observation(&self.mesh, BrickOwner::Body(body), x, y, slope).ok_or(FemError::NoGeometry)
     }
 
-    /// Where the boxes of `geometry` and the fixture's rigid bodies differ in mass, inertia or centre of gravity by more than the
-    /// share `tolerance`, a sentence for each.
+    /// Where the boxes of `geometry` and the fixture's rigid bodies differ in mass, inertia or centre of
+    /// gravity by more than the share `tolerance`, a sentence for each.
     pub fn disagreements(&self, tolerance: f64) -> Vec<String> {
         let Some(geometry) = self.fixture.geometry() else { return Vec::new() };
         let mut found = Vec::new();

@@ -1,4 +1,5 @@
-//! A parameter of what was found, with deviation and interval; of a vague one only the order of magnitude is known.
+//! A parameter of what was found, with deviation and interval; of a vague one only the order of magnitude is
+//! known.
 
 use jointscope_fixture::{Dof, ParameterRange, ParameterSpec};
 use jointscope_inference::{Z95, interval95};
@@ -32,7 +33,8 @@ impl Estimate {
         Estimate { parameter, value, std: None, interval: None, unit: parameter.unit_in(dof) }
     }
 
-    /// The same known to ± `std`, its errors normal; the interval holds none but possible values: of a dashpot that may be none it begins at zero.
+    /// The same known to ± `std`, its errors normal; the interval holds none but possible values: of a
+    /// dashpot that may be none it begins at zero.
     pub fn within(self, std: f64) -> Self {
         let [low, high] = interval95(self.value, std);
         Estimate { std: Some(std), interval: Some([low.max(self.least()), high]), ..self }

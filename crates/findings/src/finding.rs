@@ -4,7 +4,8 @@ use crate::Estimate;
 use jointscope_fixture::Effect;
 use serde::Serialize;
 
-/// A piece of physics that the data need. What only one kind of data tells of it is its `evidence`: `E` differs between FRFs, hits and levels.
+/// A piece of physics that the data need. What only one kind of data tells of it is its `evidence`: `E`
+/// differs between FRFs, hits and levels.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Finding<E> {
     /// Kind, place, dof and parameters.
@@ -23,7 +24,8 @@ pub struct Finding<E> {
     pub evidence: E,
 }
 
-/// Probability from which another name for a finding is to be reckoned with: worth a word, and a measurement that tells it apart.
+/// Probability from which another name for a finding is to be reckoned with: worth a word, and a measurement
+/// that tells it apart.
 const LIKELY: f64 = 0.05;
 
 impl<E> Finding<E> {

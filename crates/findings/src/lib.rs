@@ -1,4 +1,5 @@
-//! What every diagnosis answers with, linear or not: a [`Verdict`], [`Finding`]s with an [`Estimate`] of each parameter, the judgement on [`HeldOut`] data.
+//! What every diagnosis answers with, linear or not: a [`Verdict`], [`Finding`]s with an [`Estimate`] of each
+//! parameter, the judgement on [`HeldOut`] data.
 //!
 //! All of it serialises as `diagnosis.json` has it.
 //!

@@ -7,8 +7,9 @@ use jointscope_spectra::FrfSet;
 /// χ² of a line against its neighbours from which it breaks off.
 const BREAKS: f64 = 200.0;
 
-/// The lines, by index, on which at least half of the FRFs break off their course: as they do at the edges of mains hum and of peaks that were clipped, and where no
-/// mode of a structure makes them. `weights` are 1/variance of the real part, and of the imaginary part, FRF after FRF.
+/// The lines, by index, on which at least half of the FRFs break off their course: as they do at the edges of
+/// mains hum and of peaks that were clipped, and where no mode of a structure makes them. `weights` are
+/// 1/variance of the real part, and of the imaginary part, FRF after FRF.
 pub fn breaks(frfs: &FrfSet, weights: &[f64]) -> Vec<usize> {
     let (hz, count) = (frfs.lines().hz(), frfs.pairs().len());
     let mut fit = LocalRationalFit::new();

@@ -1,8 +1,9 @@
 //! Resonances that move from one FRF to the next, as those of a structure do that warms up between hits.
 //!
-//! FRFs of one response share their poles whatever the structure is: a hammer brings no mass, and gains, delays and misplaced points
-//! move none. (FRFs of different responses do not where an accelerometer roves.) What the resonances differ by among them, beyond
-//! their noise, is drift: no model that stays the same in time can follow it.
+//! FRFs of one response share their poles whatever the structure is: a hammer brings no mass, and gains,
+//! delays and misplaced points move none. (FRFs of different responses do not where an accelerometer roves.)
+//! What the resonances differ by among them, beyond their noise, is drift: no model that stays the same in
+//! time can follow it.
 
 use crate::local_rational::LocalRationalFit;
 use jointscope_spectra::{FrfForm, FrfSet};
@@ -10,7 +11,8 @@ use num_complex::Complex64;
 
 /// FRFs of one response from which a drift can be told.
 const FEWEST: usize = 3;
-/// A resonance's summed |H|² stands out of its neighbourhood's median by this factor, and a value's by this one of its variance.
+/// A resonance's summed |H|² stands out of its neighbourhood's median by this factor, and a value's by this
+/// one of its variance.
 const STANDS_OUT: f64 = 25.0;
 /// Lines on each side of a resonance, at least and as a share of all.
 const NEIGHBOURHOOD: (usize, f64) = (8, 0.0025);
@@ -19,8 +21,8 @@ const HALF_WIDTHS: f64 = 3.0;
 const LIMITS: (usize, usize) = (5, 60);
 /// A resonance is told where its place is known to this share of its half-width.
 const KNOWN: f64 = 0.3;
-/// A resonance is resolved where its half-width is this many lines, and has moved where it did so by this share of the half-width: less is the local
-/// function's own error.
+/// A resonance is resolved where its half-width is this many lines, and has moved where it did so by this
+/// share of the half-width: less is the local function's own error.
 const RESOLVED: f64 = 0.5;
 const MOVED: f64 = 0.05;
 /// Standard deviations by which the differences must exceed their noise.
@@ -29,12 +31,14 @@ const BEYOND_NOISE: f64 = 5.0;
 /// How far resonances differ among FRFs of one response.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drift {
-    /// Frequency (Hz), relative standard deviation among the FRFs, and relative half-width (damping ratio) of each resonance, ascending.
+    /// Frequency (Hz), relative standard deviation among the FRFs, and relative half-width (damping ratio) of
+    /// each resonance, ascending.
     pub resonances: Vec<(f64, f64, f64)>,
 }
 
 impl Drift {
-    /// The drift of accelerances; `None` where no three of them share a response, or their resonances agree within their noise.
+    /// The drift of accelerances; `None` where no three of them share a response, or their resonances agree
+    /// within their noise.
     pub fn of(frfs: &FrfSet) -> Option<Self> {
         let frfs = frfs.to_form(FrfForm::Accelerance).ok()?;
         let pairs = frfs.pairs();
@@ -69,7 +73,8 @@ impl Drift {
         (0..self.resonances.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0)
     }
 
-    /// |change of the FRF|² when its resonances move by one standard deviation, at each of the lines `wanted` of an accelerance.
+    /// |change of the FRF|² when its resonances move by one standard deviation, at each of the lines `wanted`
+    /// of an accelerance.
     pub fn squared_change(&self, hz: &[f64], values: &[Complex64], wanted: &[usize]) -> Vec<f64> {
         let mut fit = LocalRationalFit::new();
         let change = |&line: &usize| {
@@ -108,7 +113,8 @@ fn peaks(frfs: &FrfSet, group: &[usize]) -> Vec<usize> {
     (0..n).filter(is_peak).collect()
 }
 
-/// Mean frequency, relative deviation and relative half-width of the resonance about `line`, and whether its FRFs differ for certain.
+/// Mean frequency, relative deviation and relative half-width of the resonance about `line`, and whether its
+/// FRFs differ for certain.
 fn differences(frfs: &FrfSet, group: &[usize], line: usize) -> Option<((f64, f64, f64), bool)> {
     let hz = frfs.lines().hz();
     let reach = neighbourhood(hz.len());

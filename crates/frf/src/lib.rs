@@ -1,9 +1,9 @@
 //! FRFs of a rigid block's motion, displacement and rotation, from accelerometers and hammer hits
 //! that only know translation (eq 19–23), and the noise that comes with them.
 //!
-//! * [`fit_rigid_motion`]: the 2×2 matrix of one block's motion per load on another by weighted least squares from any number of sensors and
-//!   hammer points, with its covariance and the residual that says whether the blocks moved rigidly; of two and two it is the paper's
-//!   two-accelerometer method;
+//! * [`fit_rigid_motion`]: the 2×2 matrix of one block's motion per load on another by weighted least squares
+//!   from any number of sensors and hammer points, with its covariance and the residual that says whether the
+//!   blocks moved rigidly; of two and two it is the paper's two-accelerometer method;
 //! * [`noise`]: variances of FRFs from coherence and averages, or from the FRFs alone;
 //! * [`KnownNoise`]: FRFs with these, the lines of long recordings merged where the FRFs are smooth;
 //! * [`Drift`]: resonances that moved between one FRF and the next.

@@ -1,7 +1,9 @@
-//! FRFs in the neighbourhood of a line: a rational function with one pole, which follows even a sharp peak between few lines.
+//! FRFs in the neighbourhood of a line: a rational function with one pole, which follows even a sharp peak
+//! between few lines.
 //!
-//! Over a few lines an FRF is one mode and a smooth rest, H ≈ (b₀ + b₁x + b₂x²)/(1 + a x) with x the distance from the line. What the
-//! FRF departs from that by is noise; its derivative and its pole are those of the structure.
+//! Over a few lines an FRF is one mode and a smooth rest, H ≈ (b₀ + b₁x + b₂x²)/(1 + a x) with x the distance
+//! from the line. What the FRF departs from that by is noise; its derivative and its pole are those of the
+//! structure.
 
 use jointscope_linalg::LuWorkspace;
 use num_complex::Complex64;
@@ -39,8 +41,8 @@ impl LocalRationalFit {
         LocalRationalFit { lu: LuWorkspace::new(), columns: Vec::new() }
     }
 
-    /// The function about `line` from the lines within `half` of it (moved inwards at the ends); the distance x is 1 at `half`
-    /// lines. `None` where there are too few lines, or they do not determine it.
+    /// The function about `line` from the lines within `half` of it (moved inwards at the ends); the distance
+    /// x is 1 at `half` lines. `None` where there are too few lines, or they do not determine it.
     pub(crate) fn about(
         &mut self,
         hz: &[f64],
@@ -90,7 +92,8 @@ impl LocalRationalFit {
 }
 
 impl LocalRationalFit {
-    /// b₀, b₁, b₂ and a from values at their distances, weighted by the denominator of the pass before; leaves the last matrix factorised.
+    /// b₀, b₁, b₂ and a from values at their distances, weighted by the denominator of the pass before;
+    /// leaves the last matrix factorised.
     fn solved(
         &mut self,
         values: impl Iterator<Item = (f64, Complex64)> + Clone,

@@ -1,16 +1,18 @@
 //! Long recordings with fewer lines, which tell the same.
 //!
-//! A zoomed or padded recording has far more lines than its resonances need. Over a block of neighbouring lines on which every FRF is a polynomial of degree 7
-//! within its noise, the polynomial by least squares tells all that the lines do. It is read at the eight Gauss nodes x_k of the block's lines, with weights W_k:
-//! for every other polynomial f of that degree
+//! A zoomed or padded recording has far more lines than its resonances need. Over a block of neighbouring
+//! lines on which every FRF is a polynomial of degree 7 within its noise, the polynomial by least squares
+//! tells all that the lines do. It is read at the eight Gauss nodes x_k of the block's lines, with weights
+//! W_k: for every other polynomial f of that degree
 //!
 //! Σ_i |H_i − f(x_i)|² = Σ_k W_k |H(x_k) − f(x_k)|² + what is left of H,
 //!
-//! and the errors of the eight values are independent, of variance σ²/W_k. A fit to the nodes is thus the fit to the lines. σ² comes from what is left, or from
-//! variances or coherence where these are known.
+//! and the errors of the eight values are independent, of variance σ²/W_k. A fit to the nodes is thus the fit
+//! to the lines. σ² comes from what is left, or from variances or coherence where these are known.
 //!
-//! Blocks are halved until the last three coefficients of every FRF are noise: the coefficients of a function with poles fall geometrically, so what the first
-//! one left out holds is below noise too. Blocks too short for that, at resonances, keep their lines.
+//! Blocks are halved until the last three coefficients of every FRF are noise: the coefficients of a function
+//! with poles fall geometrically, so what the first one left out holds is below noise too. Blocks too short
+//! for that, at resonances, keep their lines.
 
 mod block;
 mod line_noise;
@@ -39,13 +41,14 @@ pub struct KnownNoise {
     pub merged_from: Option<usize>,
     /// How many recorded lines each line stands for, which need not be a whole number; they add up to all.
     pub stands_for: Vec<f64>,
-    /// FRF after FRF, each line's part of Σ|ε|² over the recorded lines of what merging took out of them, in the square of the set's unit.
+    /// FRF after FRF, each line's part of Σ|ε|² over the recorded lines of what merging took out of them, in
+    /// the square of the set's unit.
     pub taken_out: Vec<f64>,
 }
 
 impl KnownNoise {
-    /// The set with its noise [`known`](noise::known); of more than 6,400 lines, neighbours over which all FRFs are smooth are merged, none within the
-    /// `band` (Hz) of interest with one outside.
+    /// The set with its noise [`known`](noise::known); of more than 6,400 lines, neighbours over which all
+    /// FRFs are smooth are merged, none within the `band` (Hz) of interest with one outside.
     ///
     /// # Errors
     /// Only those of a set that cannot be converted.

@@ -1,9 +1,10 @@
-//! Variances of FRFs: from coherence and averages where they were recorded, from the FRFs themselves where not.
+//! Variances of FRFs: from coherence and averages where they were recorded, from the FRFs themselves where
+//! not.
 //!
-//! With n averages the variance of one complex value is (1 − γ²)/((n − 1) γ²)·|H|², but as an estimate line by line
-//! it has so few degrees of freedom that weights taken from it are worthless. The physics behind it is smooth:
-//! response noise is a floor in the accelerance, force noise is a share of |H|². [`with_variances`] therefore
-//! fits var = S + N·|H|² with S and N slowly varying over the lines.
+//! With n averages the variance of one complex value is (1 − γ²)/((n − 1) γ²)·|H|², but as an estimate line
+//! by line it has so few degrees of freedom that weights taken from it are worthless. The physics behind it
+//! is smooth: response noise is a floor in the accelerance, force noise is a share of |H|².
+//! [`with_variances`] therefore fits var = S + N·|H|² with S and N slowly varying over the lines.
 
 mod by_coherence;
 mod by_scatter;
@@ -53,7 +54,8 @@ impl NoiseSource {
     }
 }
 
-/// The set with its own variances, or where it has none with those of [`with_variances`]; and where these came from, nothing for its own.
+/// The set with its own variances, or where it has none with those of [`with_variances`]; and where these
+/// came from, nothing for its own.
 ///
 /// # Errors
 /// Those of [`with_variances`].
@@ -110,7 +112,8 @@ fn variances(frfs: &FrfSet, index: usize, values: &[Complex64]) -> (Vec<f64>, No
 /// Averages that a recording may have.
 const AVERAGES: (f64, f64) = (1.5, 1000.0);
 
-/// The number of averages with which a coherence states the noise that the `scatter` over the lines shows; `None` where they do not go together.
+/// The number of averages with which a coherence states the noise that the `scatter` over the lines shows;
+/// `None` where they do not go together.
 fn averages_by_scatter(values: &[Complex64], coherence: &[f64], scatter: &[f64]) -> Option<u32> {
     // One less than the averages, line by line: (1 − γ²)/γ²·|H|² over the variance.
     let stated = of_lines(values, coherence, 2);

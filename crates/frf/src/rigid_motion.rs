@@ -1,4 +1,5 @@
-//! Deflection and rotation of a rigid block from its sensors, and force and moment from its hits (equations 19 to 23).
+//! Deflection and rotation of a rigid block from its sensors, and force and moment from its hits (equations
+//! 19 to 23).
 
 use jointscope_linalg::{ComplexMatrix2, LeastSquares, LeastSquaresError, Matrix2};
 use jointscope_spectra::{Dof, FrfForm, FrfSet, SpectraError, SpectralLines};
@@ -183,7 +184,8 @@ pub fn fit_rigid_motion(frfs: &FrfSet, layout: &BlockLayout) -> Result<BlockFrf,
     Ok(result)
 }
 
-/// Weight of an FRF's receptance on a line, `scale` times the variance being that of the receptance; zero without coherence.
+/// Weight of an FRF's receptance on a line, `scale` times the variance being that of the receptance; zero
+/// without coherence.
 fn weight(frfs: &FrfSet, (index, line): (usize, usize), scale: f64) -> f64 {
     let coherent = frfs.coherence(index).is_none_or(|c| c[line] > 0.0);
     match frfs.variance(index) {
@@ -258,8 +260,9 @@ mod tests {
         Matrix2::new(c(1.0, 0.2), c(-0.3, 4.0), c(5.0, -2.0), c(30.0, 11.0))
     }
 
-    /// H41 from the responses at points 4 and 3 to a force at 1 and to one at 2, `sensors` from 3 to 4 and `hits` from 1 to 2, m: rotations are
-    /// differences of sensors (19), moments differences of forces (22, 23).
+    /// H41 from the responses at points 4 and 3 to a force at 1 and to one at 2, `sensors` from 3 to 4 and
+    /// `hits` from 1 to 2, m: rotations are differences of sensors (19), moments differences of forces (22,
+    /// 23).
     fn by_differences(
         per_force_1: [Complex64; 2],
         per_force_2: [Complex64; 2],

@@ -1,6 +1,7 @@
 //! Fourier transforms of sampled signals.
 //!
-//! The transform's library is generic and large, and every crate that names it compiles it anew. So this one alone does.
+//! The transform's library is generic and large, and every crate that names it compiles it anew. So this one
+//! alone does.
 
 use num_complex::Complex64;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};

@@ -1,4 +1,5 @@
-//! The signals of a hammer hit: one force and the responses to it over time, in SI units and the fixture's terms.
+//! The signals of a hammer hit: one force and the responses to it over time, in SI units and the fixture's
+//! terms.
 //!
 //! * [`Hit`]: what was recorded from one blow, all channels on the same sampling instants;
 //! * [`Response`]: one sensor's signal and the [`MeasuredMotion`] it measures;
@@ -125,10 +126,12 @@ pub enum HitError {
 }
 
 impl Hit {
-    /// A hit from its signals: `interval` between samples and instant of the first sample in s, force in N along +y (or N·m along +θ).
+    /// A hit from its signals: `interval` between samples and instant of the first sample in s, force in N
+    /// along +y (or N·m along +θ).
     ///
     /// # Errors
-    /// Signals of different length, of no samples or with values that are no finite numbers, a response given twice.
+    /// Signals of different length, of no samples or with values that are no finite numbers, a response given
+    /// twice.
     pub fn new(
         number: u32,
         interval: f64,

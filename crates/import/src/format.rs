@@ -1,4 +1,5 @@
-//! Formats of recordings, told by a file's first bytes and not by its name; what people mistake for a recording gets a hint.
+//! Formats of recordings, told by a file's first bytes and not by its name; what people mistake for a
+//! recording gets a hint.
 
 use crate::ImportError;
 

@@ -5,7 +5,8 @@ use num_complex::Complex64;
 
 use crate::ChannelPair;
 
-/// The function of a pair over frequencies. What it measures its unit label says, or nobody: `m/s^2/N`, `g per N`.
+/// The function of a pair over frequencies. What it measures its unit label says, or nobody: `m/s^2/N`,
+/// `g per N`.
 pub(crate) fn function(
     pair: &ChannelPair,
     frequencies: (&[f64], &str),

@@ -1,7 +1,9 @@
-//! Recordings in other formats than universal files: CSV tables and MATLAB files in, functions of a universal file out.
+//! Recordings in other formats than universal files: CSV tables and MATLAB files in, functions of a universal
+//! file out.
 //!
-//! [`read()`] tells the format by the bytes ([`Format`]) and hands back what a universal file of the same FRFs would hold, so that everything
-//! behind it (units, directions, maps) is the same for all formats. It opens no file.
+//! [`read()`] tells the format by the bytes ([`Format`]) and hands back what a universal file of the same
+//! FRFs would hold, so that everything behind it (units, directions, maps) is the same for all formats. It
+//! opens no file.
 //!
 //! | format | what is an FRF |
 //! |---|---|
@@ -9,8 +11,9 @@
 //! | CSV | columns `4/1 real` and `4/1 imag`, or `4/1 magnitude` and `4/1 phase [deg]`, beside a column `frequency [Hz]`; see [`csv`](mod@crate::csv) |
 //! | MATLAB v5, v7, v7.3 | a structure as Simcenter Testlab exports it, or an array of complex values beside one of frequencies; see [`mat`] |
 //!
-//! Names that say nothing of nodes are given their FRF by a [`ColumnMap`], such as `H1=4/1 [m/s^2/N]`. Units are those of the file or of the
-//! map; where neither states any, the unit label stays blank and whoever reads the function asks for it.
+//! Names that say nothing of nodes are given their FRF by a [`ColumnMap`], such as `H1=4/1 [m/s^2/N]`. Units
+//! are those of the file or of the map; where neither states any, the unit label stays blank and whoever
+//! reads the function asks for it.
 //!
 //! # Example: one FRF of a table
 //! ```

@@ -55,7 +55,8 @@ impl ColumnMap {
         self.entries.iter().enumerate().find(|(_, entry)| entry.name.is_none() && entry.pair == *pair)
     }
 
-    /// The entry of a file with one FRF: one by the file's name, with or without its folder, else one without name.
+    /// The entry of a file with one FRF: one by the file's name, with or without its folder, else one without
+    /// name.
     pub(crate) fn of_file(&self, file: &str) -> Option<(usize, &ColumnEntry)> {
         let last = file.rsplit(['/', '\\']).next().unwrap_or(file);
         let nameless = || self.entries.iter().enumerate().find(|(_, entry)| entry.name.is_none());

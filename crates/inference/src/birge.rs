@@ -5,7 +5,8 @@ use statrs::function::gamma::gamma_ur;
 /// Probability below which departures are no chance.
 const NO_CHANCE: f64 = 0.01;
 
-/// Birge's ratio: squared departures of quantities from what is stated, in standard deviations, per what chance makes of them; 1 where chance explains them.
+/// Birge's ratio: squared departures of quantities from what is stated, in standard deviations, per what
+/// chance makes of them; 1 where chance explains them.
 ///
 /// What deviations rest on these statements is to be multiplied by its root.
 pub fn birge_ratio(squares: f64, expected: f64) -> f64 {

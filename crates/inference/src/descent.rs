@@ -19,7 +19,8 @@ const VALLEY: f64 = 3.0;
 /// Dampings tried with old derivatives before new ones are taken.
 const ATTEMPTS_WITH_OLD: usize = 2;
 
-/// Goes down from `start` until it has converged or is given up; with derivatives known from nearby where there are any.
+/// Goes down from `start` until it has converged or is given up; with derivatives known from nearby where
+/// there are any.
 ///
 /// `None` where a point on the way has no derivatives.
 pub fn descend<P: LeastSquares>(
@@ -109,7 +110,8 @@ struct At<'a, P: LeastSquares> {
 }
 
 impl<'a, P: LeastSquares> At<'a, P> {
-    /// At a point where `objective` is that of the weights before; `fresh` where the derivatives are those of the point.
+    /// At a point where `objective` is that of the weights before; `fresh` where the derivatives are those of
+    /// the point.
     fn of(
         problem: &P,
         point: &'a P::Point,
@@ -124,7 +126,8 @@ impl<'a, P: LeastSquares> At<'a, P> {
         At { point, derivatives, weights, equations, objective, promised }
     }
 
-    /// The next point with its objective, and whether it lies along a curved valley, where a damped step gained much less than was promised.
+    /// The next point with its objective, and whether it lies along a curved valley, where a damped step
+    /// gained much less than was promised.
     fn next(&self, problem: &P, damping: &mut f64, settings: &Settings) -> (Option<(P::Point, f64)>, bool) {
         let attempts = if self.promised.is_some() { usize::MAX } else { ATTEMPTS_WITH_OLD };
         let next = lower(problem, self, (damping, attempts), settings);
@@ -168,10 +171,12 @@ fn lower<P: LeastSquares>(
 /// Shares of an undamped step that are tried in turn.
 const SHARES: [f64; 4] = [1.0, 0.4, 0.15, 0.05];
 
-/// The point beside the way of an undamped step that lowers the objective below `than`, the lowest of those tried.
+/// The point beside the way of an undamped step that lowers the objective below `than`, the lowest of those
+/// tried.
 ///
-/// What a share α of the step does across a curved valley grows as α², and its cost as α⁴: damped steps creep. One more step from there, by the same derivatives, takes
-/// that back but for what grows as α³ (the geodesic acceleration of Transtrum & Sethna, arXiv:1201.5885, by a finite step).
+/// What a share α of the step does across a curved valley grows as α², and its cost as α⁴: damped steps
+/// creep. One more step from there, by the same derivatives, takes that back but for what grows as α³ (the
+/// geodesic acceleration of Transtrum & Sethna, arXiv:1201.5885, by a finite step).
 fn along_valley<P: LeastSquares>(problem: &P, at: &At<P>, than: f64) -> Option<(P::Point, f64)> {
     let mut best: Option<(P::Point, f64)> = None;
     for share in SHARES {

@@ -1,6 +1,7 @@
 //! What a standard deviation comes to as an interval, and where a test refutes.
 
-/// Half of a 95 % interval of a normal distribution in standard deviations, to as many digits as deviations are ever known to.
+/// Half of a 95 % interval of a normal distribution in standard deviations, to as many digits as deviations
+/// are ever known to.
 pub const Z95: f64 = 1.96;
 
 /// Probability below which a test refutes what it tests.

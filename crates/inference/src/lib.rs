@@ -1,20 +1,21 @@
 //! Parameters, priors, the one damped Gauss–Newton method of the program, and what a fit leaves uncertain.
 //!
 //! Every fit minimises the same thing: a weighted sum of squared residuals and the squared deviations of the
-//! parameters from what was known before, −2 ln(likelihood × prior) up to a constant. What differs is the model.
-//! So a fit is a [`LeastSquares`] problem (a model, its derivatives, its normal equations) and [`descend`] is its
-//! solution:
+//! parameters from what was known before, −2 ln(likelihood × prior) up to a constant. What differs is the
+//! model. So a fit is a [`LeastSquares`] problem (a model, its derivatives, its normal equations) and
+//! [`descend`] is its solution:
 //!
-//! * [`Parameter`], [`Transform`]: how a physical quantity moves in a fit (as it is, by its logarithm, not at all),
-//!   between which bounds, with which prior;
+//! * [`Parameter`], [`Transform`]: how a physical quantity moves in a fit (as it is, by its logarithm, not at
+//!   all), between which bounds, with which prior;
 //! * [`NormalEquations`]: JᵀWJ and JᵀWr with the priors; held coordinates, and steps that stop at bounds;
 //! * [`descend`]: damped Gauss–Newton steps that use derivatives for as long as they still serve;
-//! * [`inflated_weight`]: weights that count a share of the signal as noise, so that sharp resonances do not decide
-//!   where a fit from afar goes;
+//! * [`inflated_weight`]: weights that count a share of the signal as noise, so that sharp resonances do not
+//!   decide where a fit from afar goes;
 //! * [`Covariance`], [`jackknife`], [`autocorrelation`], [`variance_inflation`]: uncertainty;
 //! * [`birge_ratio`]: by how much departures exceed what chance makes of them;
 //! * [`interval95`], [`Z95`], [`SIGNIFICANT`]: the one convention of intervals and tests;
-//! * [`QuadraticLikelihood`]: what one recording tells of parameters that others tell of as well, put together in closed form;
+//! * [`QuadraticLikelihood`]: what one recording tells of parameters that others tell of as well, put
+//!   together in closed form;
 //! * [`each`]: many fits on all threads.
 //!
 //! ```

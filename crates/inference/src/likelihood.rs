@@ -1,8 +1,9 @@
 //! Likelihoods of several recordings that share parameters, put together without fitting anything again.
 //!
-//! Near the optimum of its fit a recording tells of its parameters x what a Gaussian tells: ln L(x) = gᵀ(x − a) − ½ (x − a)ᵀ J (x − a) up to a constant, with the
-//! information J of the data *alone*: the prior of a parameter that two recordings share must enter once, not twice. Parameters that only one recording knows of
-//! are integrated out beforehand, with their own priors.
+//! Near the optimum of its fit a recording tells of its parameters x what a Gaussian tells: ln L(x) = gᵀ(x −
+//! a) − ½ (x − a)ᵀ J (x − a) up to a constant, with the information J of the data *alone*: the prior of a
+//! parameter that two recordings share must enter once, not twice. Parameters that only one recording knows
+//! of are integrated out beforehand, with their own priors.
 
 use crate::NormalEquations;
 use jointscope_linalg::{Cholesky, dot};
@@ -19,7 +20,8 @@ pub struct QuadraticLikelihood {
 }
 
 impl QuadraticLikelihood {
-    /// From the normal equations at a point, of which the priors (precision by coordinate, centred at zero) are taken out.
+    /// From the normal equations at a point, of which the priors (precision by coordinate, centred at zero)
+    /// are taken out.
     pub fn without_priors(
         equations: &NormalEquations,
         at: &[f64],
@@ -36,7 +38,8 @@ impl QuadraticLikelihood {
         self.at.len()
     }
 
-    /// The likelihood of the parameters `kept`, all others integrated out with the precisions of their own priors, which are centred at zero.
+    /// The likelihood of the parameters `kept`, all others integrated out with the precisions of their own
+    /// priors, which are centred at zero.
     ///
     /// `None` where data and priors leave one of the others undetermined.
     pub fn marginal(&self, kept: &[usize], precision: impl Fn(usize) -> f64) -> Option<QuadraticLikelihood> {
@@ -84,7 +87,8 @@ impl QuadraticLikelihood {
         self
     }
 
-    /// Adds it to normal equations about `reference`, parameter i of this likelihood being coordinate `places[i]` there.
+    /// Adds it to normal equations about `reference`, parameter i of this likelihood being coordinate
+    /// `places[i]` there.
     pub fn add_to(&self, equations: &mut NormalEquations, reference: &[f64], places: &[usize]) {
         let n = self.order();
         let away: Vec<f64> = places.iter().zip(&self.at).map(|(&place, at)| reference[place] - at).collect();
@@ -117,8 +121,8 @@ mod tests {
 
     #[test]
     fn two_weighings_on_one_scale_have_the_closed_form_of_their_difference() {
-        // y₁ = x₁ + q + e₁, y₂ = x₂ + q + e₂, of variances 1, with q of prior variance 100: x₂ − x₁ = y₂ − y₁ with variance 2 whatever q, each x by itself 101;
-        // the covariance of x₁ and x₂ is that of q.
+        // y₁ = x₁ + q + e₁, y₂ = x₂ + q + e₂, of variances 1, with q of prior variance 100: x₂ − x₁ = y₂ − y₁
+        // with variance 2 whatever q, each x by itself 101; the covariance of x₁ and x₂ is that of q.
         let about = [0.3, -1.7];
         let fit = |y: f64| {
             let equations = equations(&[(&[1.0, 1.0], y)], &about, &[0.0, 0.01]);
@@ -140,7 +144,8 @@ mod tests {
         fn parts_put_together_are_the_fit_of_all_data_at_once(
             values in prop::collection::vec(-1.0f64..1.0, 80), about in prop::collection::vec(-2.0f64..2.0, 8)
         ) {
-            // Each recording: two numbers of its own, one nuisance of its own (prior 2), one shared quantity (prior 0.5).
+            // Each recording: two numbers of its own, one nuisance of its own (prior 2), one shared quantity
+            // (prior 0.5).
             let precision = [0.0, 0.0, 2.0, 0.5];
             let (first, second) = values.split_at(40);
             let rows = |values: &[f64]| -> Vec<(Vec<f64>, f64)> {

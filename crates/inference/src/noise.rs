@@ -1,8 +1,10 @@
 //! Noise that a fit counts in proportion to the signal while it is far from its optimum.
 
-/// The weight 2/σ² of a complex value when a share `epsilon` of `size` (a squared amplitude) counts as noise too: 2/(σ² + ε²·size).
+/// The weight 2/σ² of a complex value when a share `epsilon` of `size` (a squared amplitude) counts as noise
+/// too: 2/(σ² + ε²·size).
 ///
-/// Far from the optimum a sharp resonance would decide where a fit goes; with this it does not. A value of weight zero keeps it.
+/// Far from the optimum a sharp resonance would decide where a fit goes; with this it does not. A value of
+/// weight zero keeps it.
 pub fn inflated_weight(weight: f64, size: f64, epsilon: f64) -> f64 {
     if epsilon == 0.0 || weight == 0.0 {
         return weight;

@@ -1,11 +1,12 @@
-//! Normal equations of a weighted least-squares problem with priors, and the damped, bounded steps that they ask for.
+//! Normal equations of a weighted least-squares problem with priors, and the damped, bounded steps that they
+//! ask for.
 
 use crate::{Covariance, Parameter, weighted_products};
 use jointscope_linalg::{Cholesky, solve_positive_definite};
 use num_complex::Complex64;
 
-/// The normal equations of a fit: the information JᵀWJ with the priors' precisions on its diagonal, and minus half the objective's
-/// gradient, JᵀWr less what the priors pull.
+/// The normal equations of a fit: the information JᵀWJ with the priors' precisions on its diagonal, and minus
+/// half the objective's gradient, JᵀWr less what the priors pull.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NormalEquations {
     /// Number of coordinates.
@@ -27,8 +28,9 @@ impl NormalEquations {
         NormalEquations { order, information: vec![0.0; order * order], right: vec![0.0; order] }
     }
 
-    /// From complex columns of derivatives (as many as coordinates) and the residual, each value weighted by 2/σ², both parts of a complex
-    /// value counting. Coordinates for which `held` is true stay where they are; `priors` are (precision, coordinate).
+    /// From complex columns of derivatives (as many as coordinates) and the residual, each value weighted by
+    /// 2/σ², both parts of a complex value counting. Coordinates for which `held` is true stay where they
+    /// are; `priors` are (precision, coordinate).
     pub fn of_columns(
         columns: &[impl AsRef<[Complex64]>],
         residual: &[Complex64],
@@ -78,14 +80,15 @@ impl NormalEquations {
         matrix
     }
 
-    /// The step with every curvature raised by the share `damping`; `None` where that is not positive definite.
+    /// The step with every curvature raised by the share `damping`; `None` where that is not positive
+    /// definite.
     pub fn step(&self, damping: f64) -> Option<Vec<f64>> {
         let (mut matrix, mut step) = (self.damped(damping), self.right.clone());
         solve_positive_definite(&mut matrix, &mut step).then_some(step)
     }
 
-    /// As [`NormalEquations::step`] from `coordinates`, within the parameters' bounds: a coordinate whose step would cross its bound stops
-    /// there, and the others are solved for again.
+    /// As [`NormalEquations::step`] from `coordinates`, within the parameters' bounds: a coordinate whose
+    /// step would cross its bound stops there, and the others are solved for again.
     pub fn bounded_step(
         &self,
         damping: f64,
@@ -125,8 +128,9 @@ impl NormalEquations {
         None
     }
 
-    /// The step across a curved valley that corrects a `share` of an undamped one: what an undamped step from where it led (`self`, at `coordinates`) differs from the
-    /// rest of the first one (`before`, at `earlier`).
+    /// The step across a curved valley that corrects a `share` of an undamped one: what an undamped step from
+    /// where it led (`self`, at `coordinates`) differs from the rest of the first one (`before`, at
+    /// `earlier`).
     pub fn correction(
         &self,
         coordinates: &[f64],
@@ -145,7 +149,8 @@ impl NormalEquations {
         step.iter().zip(&self.right).map(|(step, right)| step * right).sum::<f64>().abs()
     }
 
-    /// Covariance of the coordinates, the inverse of the information; `None` where a combination is not determined.
+    /// Covariance of the coordinates, the inverse of the information; `None` where a combination is not
+    /// determined.
     pub fn covariance(&self) -> Option<Covariance> {
         let factor = Cholesky::of(self.order, &self.information)?;
         Some(Covariance::new(self.order, factor.inverse()))

@@ -12,7 +12,8 @@ pub enum Transform {
         /// Change for one unit of the coordinate.
         scale: f64,
     },
-    /// centre·exp(scale·coordinate): positive, so that what trades against a factor of something else does so along a straight line.
+    /// centre·exp(scale·coordinate): positive, so that what trades against a factor of something else does so
+    /// along a straight line.
     Logarithmic {
         /// Value at coordinate zero.
         centre: f64,
@@ -31,7 +32,8 @@ impl Transform {
         }
     }
 
-    /// The coordinate of a value, of the smallest positive number where a logarithm has none; `None` where the quantity stays.
+    /// The coordinate of a value, of the smallest positive number where a logarithm has none; `None` where
+    /// the quantity stays.
     pub fn coordinate(&self, value: f64) -> Option<f64> {
         match self {
             Transform::Fixed => None,
@@ -52,7 +54,8 @@ impl Transform {
     }
 }
 
-/// A parameter of a fit: its transform, its bounds and what was known of it before, as a normal distribution of its coordinate about zero.
+/// A parameter of a fit: its transform, its bounds and what was known of it before, as a normal distribution
+/// of its coordinate about zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parameter {
     /// From coordinate to value.
@@ -86,7 +89,8 @@ impl Parameter {
         self.transform != Transform::Fixed
     }
 
-    /// The nearest coordinate within the bounds; a bound that is no number bounds nothing, and of bounds that exclude each other the one that is passed holds.
+    /// The nearest coordinate within the bounds; a bound that is no number bounds nothing, and of bounds that
+    /// exclude each other the one that is passed holds.
     pub fn clamp(&self, coordinate: f64) -> f64 {
         if coordinate < self.low {
             self.low

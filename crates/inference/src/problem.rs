@@ -1,4 +1,5 @@
-//! What a descent minimises: a weighted sum of squared residuals with priors, and what a problem has to tell of it.
+//! What a descent minimises: a weighted sum of squared residuals with priors, and what a problem has to tell
+//! of it.
 
 /// How exactly derivatives are wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,7 +44,8 @@ pub trait LeastSquares {
     /// The point that a step with the given relative damping leads to; `None` where there is none.
     fn stepped(&self, point: &Self::Point, equations: &Self::Equations, damping: f64) -> Option<Self::Point>;
 
-    /// The point at a share of an undamped step; `None` where there is none. Needed for [`Settings::curved_valley`](crate::Settings::curved_valley).
+    /// The point at a share of an undamped step; `None` where there is none. Needed for
+    /// [`Settings::curved_valley`](crate::Settings::curved_valley).
     fn shortened(
         &self,
         _point: &Self::Point,
@@ -53,8 +55,9 @@ pub trait LeastSquares {
         None
     }
 
-    /// From `at`, to which [`LeastSquares::shortened`] led from another point: moved across the valley by what an undamped step from here differs from what is left of
-    /// the first one; `None` where there is none. The equations are those of both points, from the same derivatives.
+    /// From `at`, to which [`LeastSquares::shortened`] led from another point: moved across the valley by
+    /// what an undamped step from here differs from what is left of the first one; `None` where there is
+    /// none. The equations are those of both points, from the same derivatives.
     fn corrected(
         &self,
         _at: &Self::Point,
@@ -65,8 +68,9 @@ pub trait LeastSquares {
         None
     }
 
-    /// Decrease of the objective that an undamped step promises where the model follows its derivatives. Needed for
-    /// [`Settings::limit`](crate::Settings::limit) and [`Settings::valleys`](crate::Settings::valleys).
+    /// Decrease of the objective that an undamped step promises where the model follows its derivatives.
+    /// Needed for [`Settings::limit`](crate::Settings::limit) and
+    /// [`Settings::valleys`](crate::Settings::valleys).
     fn promised(&self, _point: &Self::Point, _equations: &Self::Equations) -> f64 {
         0.0
     }

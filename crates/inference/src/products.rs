@@ -1,4 +1,5 @@
-//! Weighted products of columns: the normal equations of a fit, with the widest instructions the processor has.
+//! Weighted products of columns: the normal equations of a fit, with the widest instructions the processor
+//! has.
 
 use num_complex::Complex64;
 

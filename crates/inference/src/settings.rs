@@ -48,8 +48,8 @@ pub struct Limit {
 }
 
 impl Limit {
-    /// Whether a fit that stands at `objective` will not reach the limit by what its derivatives promise. Along a curved valley they promise little of what there is, so
-    /// within reach no promise is too small.
+    /// Whether a fit that stands at `objective` will not reach the limit by what its derivatives promise.
+    /// Along a curved valley they promise little of what there is, so within reach no promise is too small.
     pub(crate) fn is_out_of_reach(&self, objective: f64, promised: f64) -> bool {
         objective - self.promises * promised > self.objective && objective - self.objective > self.reach
     }
@@ -66,20 +66,25 @@ pub struct Settings {
     pub damping: StepDamping,
     /// When it has converged.
     pub convergence: Convergence,
-    /// Derivatives serve for as long as a step gains this share of their first one's gain; `None` takes them anew for every step.
+    /// Derivatives serve for as long as a step gains this share of their first one's gain; `None` takes them
+    /// anew for every step.
     pub reuse: Option<f64>,
-    /// Whether derivatives that a descent is given pass for those of its start: taken there, or so near that a step by them is as good.
+    /// Whether derivatives that a descent is given pass for those of its start: taken there, or so near that
+    /// a step by them is as good.
     pub fresh: bool,
     /// Whether a fit may be called converged by derivatives that were taken elsewhere.
     pub trust_old: bool,
-    /// Whether the last steps use [`DerivativePrecision::Exact`](crate::DerivativePrecision::Exact) derivatives.
+    /// Whether the last steps use [`DerivativePrecision::Exact`](crate::DerivativePrecision::Exact)
+    /// derivatives.
     pub exact_at_end: bool,
     /// Objective to be reached, for one fit among many.
     pub limit: Option<Limit>,
-    /// Share of what an undamped step promises below which a step with new derivatives follows a curved valley: then shares of the undamped step are tried, which
-    /// goes along the valley where damping goes hardly anywhere. Zero tries none.
+    /// Share of what an undamped step promises below which a step with new derivatives follows a curved
+    /// valley: then shares of the undamped step are tried, which goes along the valley where damping goes
+    /// hardly anywhere. Zero tries none.
     pub curved_valley: f64,
-    /// How often an undamped step is tried where the damped ones gain little of what is promised, as along a flat valley.
+    /// How often an undamped step is tried where the damped ones gain little of what is promised, as along a
+    /// flat valley.
     pub valleys: usize,
 }
 

@@ -1,7 +1,8 @@
 //! What becomes of many items, on all threads.
 //!
-//! Rayon's iterators are generic down to the jobs of its threads: every use of them was eight thousand lines for the compiler, a quarter of a crate that searches. Here they are compiled once,
-//! and what depends on the items is a slot for each result.
+//! Rayon's iterators are generic down to the jobs of its threads: every use of them was eight thousand lines
+//! for the compiler, a quarter of a crate that searches. Here they are compiled once, and what depends on the
+//! items is a slot for each result.
 
 use rayon::prelude::*;
 use std::sync::{Mutex, PoisonError};

@@ -50,7 +50,8 @@ pub fn jackknife(without_each: &[Vec<f64>]) -> Covariance {
     Covariance::new(order, (0..order * order).map(|e| product(e / order, e % order)).collect())
 }
 
-/// Correlation of neighbours within series of `length` values each, of mean zero: near zero where residuals are white.
+/// Correlation of neighbours within series of `length` values each, of mean zero: near zero where residuals
+/// are white.
 pub fn autocorrelation(values: &[Complex64], length: usize) -> f64 {
     let (mut product, mut square) = (0.0, 0.0);
     for series in values.chunks_exact(length.max(1)) {
@@ -63,8 +64,9 @@ pub fn autocorrelation(values: &[Complex64], length: usize) -> f64 {
 /// Autocorrelation that chance hardly makes, and the largest that is corrected for.
 const CORRELATED: (f64, f64) = (0.15, 0.9);
 
-/// Variance inflation: χ² per degree of freedom where that is above one, times (1 + ρ)/(1 − ρ) where residuals of neighbouring lines are
-/// correlated by ρ. What a gain in χ² is divided by to count as one of independent values of known noise.
+/// Variance inflation: χ² per degree of freedom where that is above one, times (1 + ρ)/(1 − ρ) where
+/// residuals of neighbouring lines are correlated by ρ. What a gain in χ² is divided by to count as one of
+/// independent values of known noise.
 pub fn variance_inflation(chi2_per_dof: f64, autocorrelation: f64) -> f64 {
     let (least, most) = CORRELATED;
     let rho = autocorrelation.min(most);

@@ -1,7 +1,8 @@
 //! Diagnoses recorded cases whose truth lies beside them, and compares.
 //!
-//! `cargo run --release -p jointscope --example diagnose_cases -- DIR…`: each folder holds `fixture.json`, `frf.uff` and
-//! `truth.json` with `effects` and `accepted` (names that the data cannot tell from the truth). Folders without FRFs are left out.
+//! `cargo run --release -p jointscope --example diagnose_cases -- DIR…`: each folder holds `fixture.json`,
+//! `frf.uff` and `truth.json` with `effects` and `accepted` (names that the data cannot tell from the truth).
+//! Folders without FRFs are left out.
 #![allow(clippy::unwrap_used)]
 
 use jointscope::Fixture;

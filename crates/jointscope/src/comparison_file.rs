@@ -84,8 +84,9 @@ struct Order<'a> {
     decided: Vec<[&'a str; 2]>,
 }
 
-/// The contents of `comparison.json`: the joints' matrices with standard deviations, what they share, every two of them, the order by each number with its probability,
-/// models over measurements, the scatter of specimens, and what is to be known before any of it.
+/// The contents of `comparison.json`: the joints' matrices with standard deviations, what they share, every
+/// two of them, the order by each number with its probability, models over measurements, the scatter of
+/// specimens, and what is to be known before any of it.
 pub fn comparison_file(comparison: &Comparison) -> Value {
     let name = |index: usize| comparison.joints[index].name.as_str();
     let joints = comparison.joints.iter().enumerate().map(|(index, joint)| {

@@ -13,9 +13,9 @@ use serde::{Serialize, Serializer};
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// The contents of `diagnosis.json`: verdict, mismatch, findings with intervals and alternatives, errors of the three models, and beyond the
-/// contract where the tolerances ended, where each FRF's noise came from, and what every place leaves unexplained. SI units; what is not
-/// finite is `null`.
+/// The contents of `diagnosis.json`: verdict, mismatch, findings with intervals and alternatives, errors of
+/// the three models, and beyond the contract where the tolerances ended, where each FRF's noise came from,
+/// and what every place leaves unexplained. SI units; what is not finite is `null`.
 pub fn diagnosis_file(diagnosis: &Diagnosis) -> Value {
     let (chi2_per_dof, p_value) = diagnosis.refitted;
     value(DiagnosisFile {

@@ -1,4 +1,5 @@
-//! FRFs that `--also uff` writes beside an answer: what was measured, what models make of it, and the difference.
+//! FRFs that `--also uff` writes beside an answer: what was measured, what models make of it, and the
+//! difference.
 
 use jointscope_check::{RecordingCheck, fixture_frfs};
 use jointscope_decomposition::{FittedFrfs, JointFit};
@@ -8,9 +9,10 @@ use jointscope_pipeline::{Answer, Outcome};
 use jointscope_spectra::{FrfSet, SpectraError};
 use num_complex::Complex64;
 
-/// The FRFs behind an answer by what they are: `measured`, as the search used them, with their coherence; of each model (`nominal`, `refitted`, and `repaired` where it is
-/// another) the FRFs and `residual-…`, measured less modelled. All are accelerances in SI units. Empty where the answer comes from motion over time
-/// or from levels.
+/// The FRFs behind an answer by what they are: `measured`, as the search used them, with their coherence; of
+/// each model (`nominal`, `refitted`, and `repaired` where it is another) the FRFs and `residual-…`, measured
+/// less modelled. All are accelerances in SI units. Empty where the answer comes from motion over time or
+/// from levels.
 ///
 /// # Errors
 /// A model whose FRFs are not finite.
@@ -41,7 +43,8 @@ pub fn rebuilt_frfs(analysis: &ModalAnalysis) -> Result<Vec<(String, FrfSet)>, S
     beside(analysis.measured(), [("rebuilt", rebuilt.collect())])
 }
 
-/// The FRFs behind a check: `measured`, those of the fixture as it stands (`nominal`), and `residual-nominal`; `measured` alone where the fixture has none.
+/// The FRFs behind a check: `measured`, those of the fixture as it stands (`nominal`), and
+/// `residual-nominal`; `measured` alone where the fixture has none.
 ///
 /// # Errors
 /// A fixture whose FRFs are not finite.
@@ -49,8 +52,9 @@ pub fn checked_frfs(recording: &RecordingCheck) -> Result<Vec<(String, FrfSet)>,
     beside(&recording.measured, recording.modelled.iter().map(|values| ("nominal", values.clone())))
 }
 
-/// The FRFs behind a joint from all FRFs, or behind several: `measured`, on the FRFs and lines that were fitted, those of the fixture with its own joints (`nominal`), those of
-/// the fixture with the joints found and its quantities where the fit has them (`fitted`), and `residual-…` of each.
+/// The FRFs behind a joint from all FRFs, or behind several: `measured`, on the FRFs and lines that were
+/// fitted, those of the fixture with its own joints (`nominal`), those of the fixture with the joints found
+/// and its quantities where the fit has them (`fitted`), and `residual-…` of each.
 ///
 /// # Errors
 /// A model whose FRFs are not finite.

@@ -1,7 +1,7 @@
 //! What a model of an assembly leaves out, and how stiff and damped its joints are, from hammer tests.
 //!
-//! This crate is the short way to what its parts do at length. A [`Fixture`] says what is believed about the assembly, a
-//! recording holds the FRFs between its points, and [`Analysis`] finds the joint between them:
+//! This crate is the short way to what its parts do at length. A [`Fixture`] says what is believed about the
+//! assembly, a recording holds the FRFs between its points, and [`Analysis`] finds the joint between them:
 //!
 //! ```
 //! use jointscope::{Analysis, AnalysisOptions, Fixture};
@@ -14,8 +14,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Where the recordings do not suit the fixture, [`diagnose`] tells what physics was left out: is there anything, where, what, how sure. FRFs,
-//! hits over time and stepped levels go the same way, as a [`Measurement`]. Here a recording whose response 4 reads a tenth low:
+//! Where the recordings do not suit the fixture, [`diagnose`] tells what physics was left out: is there
+//! anything, where, what, how sure. FRFs, hits over time and stepped levels go the same way, as a
+//! [`Measurement`]. Here a recording whose response 4 reads a tenth low:
 //!
 //! ```
 //! use jointscope::pipeline::Options;
@@ -61,9 +62,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`import`], [`recordings`],
-//! [`fixture`], [`schema`], [`draft`], [`spectra`], [`frf`], [`hits`], [`estimation`], [`beam`], [`damping`], [`lumped`], [`modes`], [`averaging`],
-//! [`linalg`], [`screening`], [`wording`], [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`plan`], [`check`], [`cases`], [`fem`], [`comparison`], [`export`], [`tables`], [`rig`], [`proof`], [`report`].
+//! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`],
+//! [`import`], [`recordings`], [`fixture`], [`schema`], [`draft`], [`spectra`], [`frf`], [`hits`],
+//! [`estimation`], [`beam`], [`damping`], [`lumped`], [`modes`], [`averaging`], [`linalg`], [`screening`],
+//! [`wording`], [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`plan`],
+//! [`check`], [`cases`], [`fem`], [`comparison`], [`export`], [`tables`], [`rig`], [`proof`], [`report`].
 
 pub use jointscope_averaging as averaging;
 pub use jointscope_beam as beam;
@@ -145,8 +148,8 @@ pub enum ReadError {
     Recording(Box<RecordingError>),
 }
 
-/// Reads one file as a recording of `fixture`: node numbers are point names, directions ±2 are ±y. Universal files, tables and MATLAB files are told
-/// apart by their bytes, see [`import`].
+/// Reads one file as a recording of `fixture`: node numbers are point names, directions ±2 are ±y. Universal
+/// files, tables and MATLAB files are told apart by their bytes, see [`import`].
 ///
 /// For several files, other names or missing units see [`Recording::of`].
 ///

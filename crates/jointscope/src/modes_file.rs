@@ -9,8 +9,9 @@ use num_complex::Complex64;
 use serde::Serialize;
 use serde_json::Value;
 
-/// The contents of `modes.json`: modes with standard deviations, shapes and residues, residual terms, how well the rebuilt FRFs meet the measured ones, and the
-/// stabilisation chart. SI units; complex numbers as `[real, imaginary]`; what is not told is `null`.
+/// The contents of `modes.json`: modes with standard deviations, shapes and residues, residual terms, how
+/// well the rebuilt FRFs meet the measured ones, and the stabilisation chart. SI units; complex numbers as
+/// `[real, imaginary]`; what is not told is `null`.
 pub fn modes_file(analysis: &ModalAnalysis) -> Value {
     let pairs = analysis.pairs();
     let modes = |modes: &[Mode]| modes.iter().map(|mode| ModeEntry::of(mode, pairs)).collect();

@@ -9,9 +9,9 @@ use jointscope_wording::{Remarks, Says};
 use serde::Serialize;
 use serde_json::Value;
 
-/// The contents of `diagnosis.json` for a test by hits of several strengths: as [`crate::diagnosis_file`], errors being those of the response
-/// histories, and beyond the contract the test of homogeneity, how far the hits drive each joint,
-/// and what the force–state maps say.
+/// The contents of `diagnosis.json` for a test by hits of several strengths: as [`crate::diagnosis_file`],
+/// errors being those of the response histories, and beyond the contract the test of homogeneity, how far the
+/// hits drive each joint, and what the force–state maps say.
 pub(crate) fn nonlinear_file(diagnosis: &NonlinearDiagnosis) -> Value {
     let models = diagnosis.models.as_ref();
     value(NonlinearFile {

@@ -8,8 +8,9 @@ use jointscope_wording::{Remarks, Says};
 use serde::Serialize;
 use serde_json::Value;
 
-/// The contents of `diagnosis.json` for stepped-sine FRFs at several levels: as [`crate::diagnosis_file`], and beyond the contract the table
-/// `levels` and every law `tried`. Errors are root mean squares over the levels.
+/// The contents of `diagnosis.json` for stepped-sine FRFs at several levels: as [`crate::diagnosis_file`],
+/// and beyond the contract the table `levels` and every law `tried`. Errors are root mean squares over the
+/// levels.
 pub(crate) fn stepped_file(diagnosis: &SteppedDiagnosis) -> Value {
     let [nominal, refitted, repaired, stiffness_of_its_own_a_level] = diagnosis.nrmse;
     let holds: Vec<String> =

@@ -36,15 +36,17 @@ pub fn joint_file(decomposition: &Decomposition) -> Value {
     }
 }
 
-/// The contents of `stiffness.json`: K and C by line, averages, the fitted joint and its interfaces, also by line, in SI units.
+/// The contents of `stiffness.json`: K and C by line, averages, the fitted joint and its interfaces, also by
+/// line, in SI units.
 ///
-/// `std` is what the FRFs' noise leaves uncertain, `std_fixture` what the fixture's tolerances do, `std_model` what it
-/// costs that a constant joint does not explain the FRFs.
+/// `std` is what the FRFs' noise leaves uncertain, `std_fixture` what the fixture's tolerances do,
+/// `std_model` what it costs that a constant joint does not explain the FRFs.
 pub fn stiffness_file(analysis: &Analysis) -> Value {
     value(OneJoint::of(analysis))
 }
 
-/// The contents of `stiffness.json` where several joints were found at once, or one in a loop: every joint as `joint` has it, and the covariance of all.
+/// The contents of `stiffness.json` where several joints were found at once, or one in a loop: every joint as
+/// `joint` has it, and the covariance of all.
 pub fn joints_file(joints: &JointsFit) -> Value {
     value(JointsAtOnce {
         joints: joints.joints.iter().map(JointAtOnce::of).collect(),

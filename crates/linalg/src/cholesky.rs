@@ -4,8 +4,8 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltRegularization, cholesky_in_place, cholesky_in_place_scratch};
 use faer::{MatMut, Par, Spec};
 
-/// Cholesky factor of a symmetric positive definite matrix of any order, scaled to a unit diagonal first so that parameters of different
-/// units can share it.
+/// Cholesky factor of a symmetric positive definite matrix of any order, scaled to a unit diagonal first so
+/// that parameters of different units can share it.
 #[derive(Debug, Clone)]
 pub struct Cholesky {
     order: usize,
@@ -21,8 +21,8 @@ const ROUNDING: f64 = 1e-15;
 const MANY: usize = 64;
 
 impl Cholesky {
-    /// Factorises `matrix`, row-major of order `order`, of which only the lower triangle is read; `None` where it is not positive definite to
-    /// working precision.
+    /// Factorises `matrix`, row-major of order `order`, of which only the lower triangle is read; `None`
+    /// where it is not positive definite to working precision.
     pub fn of(order: usize, matrix: &[f64]) -> Option<Self> {
         let mut factor = Cholesky::identity(order);
         factor.anew(matrix).is_some().then_some(factor)
@@ -35,7 +35,8 @@ impl Cholesky {
         Cholesky { order, lower, unit: vec![1.0; order] }
     }
 
-    /// [`Cholesky::of`] another matrix of the same order, in this one's memory. Where there is `None`, this is no matrix' factor any more.
+    /// [`Cholesky::of`] another matrix of the same order, in this one's memory. Where there is `None`, this
+    /// is no matrix' factor any more.
     pub fn anew(&mut self, matrix: &[f64]) -> Option<&Self> {
         let n = self.order;
         if matrix.len() != n * n {
@@ -112,7 +113,8 @@ impl Cholesky {
     }
 }
 
-/// Overwrites the lower triangle of a matrix with a unit diagonal, column after column, with its Cholesky factor; false where it is not positive definite.
+/// Overwrites the lower triangle of a matrix with a unit diagonal, column after column, with its Cholesky
+/// factor; false where it is not positive definite.
 fn factorise(order: usize, columns: &mut [f64]) -> bool {
     for j in 0..order {
         let (before, own) = columns.split_at_mut(j * order);
@@ -144,13 +146,14 @@ fn is_left(pivot: f64) -> bool {
     pivot > ROUNDING && pivot.is_finite()
 }
 
-/// Overwrites `b` by the solution of A x = b for a symmetric positive definite A, row-major of order `b.len()`; false where A is not positive
-/// definite to working precision.
+/// Overwrites `b` by the solution of A x = b for a symmetric positive definite A, row-major of order
+/// `b.len()`; false where A is not positive definite to working precision.
 pub fn solve_positive_definite(a: &mut [f64], b: &mut [f64]) -> bool {
     Cholesky::of(b.len(), a).map(|factor| factor.solve_in_place(b)).is_some()
 }
 
-/// L of a symmetric positive semidefinite A = L Lᵀ, both row-major: zero in the columns of what others fix, of whose own entry they leave no more than the share `rounding`.
+/// L of a symmetric positive semidefinite A = L Lᵀ, both row-major: zero in the columns of what others fix,
+/// of whose own entry they leave no more than the share `rounding`.
 pub fn semidefinite_factor(order: usize, matrix: &[f64], rounding: f64) -> Vec<f64> {
     let mut lower = vec![0.0; order * order];
     for i in 0..order {

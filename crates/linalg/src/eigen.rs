@@ -8,11 +8,11 @@ use crate::modal_basis::{EigenError, ModalBasis, judged};
 /// Solves `K φ = λ M φ` for symmetric `stiffness` and symmetric positive definite `mass`, both
 /// row-major of order `order` (eq 24 as corrected, 25, 28, 29).
 ///
-/// Coordinates are scaled to unit mass first, so that displacements and rotations weigh alike, and
-/// the standard problem is divided by its norm before it is solved. Eigenvalues that are zero to
-/// working precision (rigid motions) come back as exactly zero; negative ones of an indefinite
-/// stiffness come back as they are. The lowest modes of a structure that something very stiff holds are found from
-/// `M φ = λ⁻¹ K φ`: beside an eigenvalue of 1e14 times theirs, the problem as it stands has only rounding left of them.
+/// Coordinates are scaled to unit mass first, so that displacements and rotations weigh alike, and the
+/// standard problem is divided by its norm before it is solved. Eigenvalues that are zero to working
+/// precision (rigid motions) come back as exactly zero; negative ones of an indefinite stiffness come back as
+/// they are. The lowest modes of a structure that something very stiff holds are found from `M φ = λ⁻¹ K φ`:
+/// beside an eigenvalue of 1e14 times theirs, the problem as it stands has only rounding left of them.
 ///
 /// # Errors
 /// See [`EigenError`].
@@ -79,19 +79,22 @@ fn by_library(order: usize, mass: &[f64], stiffness: &[f64]) -> Result<ModalBasi
         .ok_or(EigenError::NoConvergence)
 }
 
-/// Root of the sum of squares, one for a matrix of zeros. The library's own guards against overflow, at a tenth of the eigenproblem's cost.
+/// Root of the sum of squares, one for a matrix of zeros. The library's own guards against overflow, at a
+/// tenth of the eigenproblem's cost.
 fn norm_of(matrix: &Mat<f64>) -> f64 {
     let column = |j: usize| matrix.col_as_slice(j).iter().map(|value| value * value).sum::<f64>();
     let norm = (0..matrix.ncols()).map(column).sum::<f64>().sqrt();
     if norm > 0.0 { norm } else { 1.0 }
 }
 
-/// Of a stiffness with a unit diagonal and so many coordinates, less than this left of a pivot may be rounding of a structure that moves as rigid.
+/// Of a stiffness with a unit diagonal and so many coordinates, less than this left of a pivot may be
+/// rounding of a structure that moves as rigid.
 const PIVOT_ROUNDING: f64 = 1e-13;
 /// Relative distance up to which eigenvalues are taken from one of the two problems together.
 const NEIGHBOURS: f64 = 1e-3;
 
-/// Modes of a structure that cannot move as rigid, from `M φ = μ K φ`: the lowest are exact in it, as the highest are in `K φ = λ M φ`.
+/// Modes of a structure that cannot move as rigid, from `M φ = μ K φ`: the lowest are exact in it, as the
+/// highest are in `K φ = λ M φ`.
 struct HeldModes {
     /// 1/μ, ascending.
     values: Vec<f64>,

@@ -5,8 +5,8 @@ const TERMS: usize = 14;
 
 /// e^A of the row-major `order` × `order` matrix by scaling and squaring.
 ///
-/// Coordinates of very different size are balanced by powers of two first, so that states in metres and in metres per second can share A.
-/// `None` where A is not finite or its exponential is not.
+/// Coordinates of very different size are balanced by powers of two first, so that states in metres and in
+/// metres per second can share A. `None` where A is not finite or its exponential is not.
 pub fn matrix_exponential(matrix: &[f64], order: usize) -> Option<Vec<f64>> {
     let n = order;
     let balance = balancing(matrix, n);

@@ -1,8 +1,9 @@
-//! The undamped modes of a handful of coordinates: two or three rigid bodies have four or six, and a fit asks for the modes of slightly changed
-//! ones by the hundred thousand. A library made for large matrices spends most of its time on its way to them.
+//! The undamped modes of a handful of coordinates: two or three rigid bodies have four or six, and a fit asks
+//! for the modes of slightly changed ones by the hundred thousand. A library made for large matrices spends
+//! most of its time on its way to them.
 //!
-//! Cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations, 8.5) on L⁻¹KL⁻ᵀ: nothing is faster at this size, and nothing more
-//! accurate.
+//! Cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations, 8.5) on L⁻¹KL⁻ᵀ: nothing is faster at
+//! this size, and nothing more accurate.
 
 use crate::modal_basis::{EigenError, ModalBasis, judged};
 
@@ -15,8 +16,8 @@ const NEGLIGIBLE: f64 = 1e-16;
 
 type Square = [[f64; FEW]; FEW];
 
-/// Solves K φ = λ M φ for balanced matrices, M with a unit diagonal and K of unit norm: eigenvalues ascending, and the shapes, ΞᵀMΞ = I, by
-/// coordinate and mode.
+/// Solves K φ = λ M φ for balanced matrices, M with a unit diagonal and K of unit norm: eigenvalues
+/// ascending, and the shapes, ΞᵀMΞ = I, by coordinate and mode.
 fn solve(n: usize, mass: &Square, stiffness: &Square) -> Result<([f64; FEW], Square), EigenError> {
     let mut lower = *mass;
     if !factorise(n, &mut lower) {
@@ -52,7 +53,8 @@ fn solve(n: usize, mass: &Square, stiffness: &Square) -> Result<([f64; FEW], Squ
     Ok((values, shapes))
 }
 
-/// Overwrites the lower triangle of the leading `n` × `n` part of a matrix with its Cholesky factor; false where it is not positive definite.
+/// Overwrites the lower triangle of the leading `n` × `n` part of a matrix with its Cholesky factor; false
+/// where it is not positive definite.
 fn factorise(n: usize, matrix: &mut Square) -> bool {
     for i in 0..n {
         for j in 0..=i {

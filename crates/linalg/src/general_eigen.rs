@@ -7,7 +7,8 @@ use crate::EigenError;
 
 /// Eigenvalues of a general complex matrix, row-major of order `order`, in no particular order.
 ///
-/// The matrix is divided by its norm before it is solved, and the sum of what comes back is held against the trace.
+/// The matrix is divided by its norm before it is solved, and the sum of what comes back is held against the
+/// trace.
 ///
 /// # Errors
 /// See [`EigenError`].

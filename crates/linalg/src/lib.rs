@@ -4,13 +4,16 @@
 //!   joint stiffness on (transverse, rotation) per spectral line;
 //! * [`LuWorkspace`]: dense complex LU with row equilibration, its memory reused from line to line;
 //! * [`LeastSquares`]: weighted linear least squares by Householder reflections, with a rank check;
-//! * [`Cholesky`], [`solve_positive_definite`]: symmetric positive definite matrices: normal equations, covariances, masses;
+//! * [`Cholesky`], [`solve_positive_definite`]: symmetric positive definite matrices: normal equations,
+//!   covariances, masses;
 //! * [`products`] of the rows of two square matrices;
 //! * [`matrix_exponential`]: real matrices of a few rows, such as those of a state space;
 //! * [`generalized_symmetric_eigen`]: `K φ = λ M φ`, scaled and with its residuals checked;
-//! * [`complex_eigenvalues`]: eigenvalues of a general complex matrix; [`singular_values`] of a complex matrix;
-//! * with the feature `sparse`: [`SparsePattern`] and [`SparseSymmetric`] assembled from element matrices, [`SparseCholesky`], and
-//!   [`lowest_modes`] of a sparse pencil by shift-invert block Lanczos, residuals checked and the modes counted ([`eigenvalues_below`]).
+//! * [`complex_eigenvalues`]: eigenvalues of a general complex matrix; [`singular_values`] of a complex
+//!   matrix;
+//! * with the feature `sparse`: [`SparsePattern`] and [`SparseSymmetric`] assembled from element matrices,
+//!   [`SparseCholesky`], and [`lowest_modes`] of a sparse pencil by shift-invert block Lanczos, residuals
+//!   checked and the modes counted ([`eigenvalues_below`]).
 //!
 //! This is the only crate that names the library behind the eigenproblem. That library loses
 //! accuracy on symmetric matrices whose norm is far from one, so scaling and residual checks live

@@ -69,7 +69,8 @@ pub type ComplexMatrix2 = Matrix2<Complex64>;
 /// A static stiffness, a damping matrix or a transport.
 pub type RealMatrix2 = Matrix2<f64>;
 
-// Always inlined: of several lines these are compiled with the instructions that their caller is compiled for.
+// Always inlined: of several lines these are compiled with the instructions that their caller is compiled
+// for.
 impl<T: Field> Matrix2<T> {
     /// The matrix `[[a, b], [c, d]]`.
     #[inline(always)]

@@ -36,8 +36,8 @@ pub struct ModalBasis {
 }
 
 impl ModalBasis {
-    /// Modes known from elsewhere: eigenvalues, ascending, and mass-normalised shapes, one after the other. `None` where the
-    /// numbers do not fit together or are not finite.
+    /// Modes known from elsewhere: eigenvalues, ascending, and mass-normalised shapes, one after the other.
+    /// `None` where the numbers do not fit together or are not finite.
     pub fn new(eigenvalues: Vec<f64>, shapes: Vec<f64>) -> Option<Self> {
         let order = eigenvalues.len();
         let fits = shapes.len() == order * order

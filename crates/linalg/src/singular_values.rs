@@ -7,7 +7,8 @@ use crate::EigenError;
 
 /// Singular values of a complex matrix, row-major with so many columns, the largest first.
 ///
-/// The matrix is divided by its norm before it is solved, and the squares of what comes back are held against it.
+/// The matrix is divided by its norm before it is solved, and the squares of what comes back are held against
+/// it.
 ///
 /// # Errors
 /// See [`EigenError`].
@@ -35,5 +36,6 @@ pub fn singular_values(columns: usize, matrix: &[Complex64]) -> Result<Vec<f64>,
     }
 }
 
-/// Departure of the sum of squares from that of the elements that is tolerated, per row, of a matrix of norm one.
+/// Departure of the sum of squares from that of the elements that is tolerated, per row, of a matrix of norm
+/// one.
 const ALLOWED: f64 = 1e-13;

@@ -70,7 +70,8 @@ pub struct SparsePattern {
 }
 
 impl SparsePattern {
-    /// The pattern of a matrix of order `order` summed from elements, each given by the equations that it couples.
+    /// The pattern of a matrix of order `order` summed from elements, each given by the equations that it
+    /// couples.
     ///
     /// # Errors
     /// An equation that is not below `order`.
@@ -187,7 +188,8 @@ impl SparseSymmetric {
         y
     }
 
-    /// A x of several vectors, each as [`multiply`](SparseSymmetric::multiply) has it: the matrix is read once, which is most of the time.
+    /// A x of several vectors, each as [`multiply`](SparseSymmetric::multiply) has it: the matrix is read
+    /// once, which is most of the time.
     pub(crate) fn multiply_each<const N: usize>(&self, vectors: [&[f64]; N]) -> [Vec<f64>; N] {
         let order = self.order();
         let x: Vec<[f64; N]> = (0..order).map(|i| vectors.map(|vector| vector[i])).collect();

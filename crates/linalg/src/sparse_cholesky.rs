@@ -1,4 +1,5 @@
-//! Factors of sparse symmetric matrices by supernodes; the order of elimination is shared by all matrices of one pattern.
+//! Factors of sparse symmetric matrices by supernodes; the order of elimination is shared by all matrices of
+//! one pattern.
 
 use std::sync::Arc;
 
@@ -13,7 +14,8 @@ use faer::{Conj, MatMut, Par, Side};
 
 use crate::{SparseError, SparsePattern, SparseSymmetric};
 
-/// The order of elimination for a pattern and where its factors have entries; shared by all factors of that pattern.
+/// The order of elimination for a pattern and where its factors have entries; shared by all factors of that
+/// pattern.
 #[derive(Debug, Clone)]
 pub(crate) struct Elimination {
     pub(crate) symbolic: Arc<SymbolicCholesky<usize>>,
@@ -21,8 +23,8 @@ pub(crate) struct Elimination {
 
 impl Elimination {
     pub(crate) fn of(pattern: &SparsePattern) -> Result<Self, SparseError> {
-        // Always by supernodes: the simplicial variant of an indefinite factor passes over a zero pivot without a word. The library's own constant for that,
-        // zero, still leaves diagonal matrices to it.
+        // Always by supernodes: the simplicial variant of an indefinite factor passes over a zero pivot
+        // without a word. The library's own constant for that, zero, still leaves diagonal matrices to it.
         let parameters = CholeskySymbolicParams {
             supernodal_flop_ratio_threshold: SupernodalThreshold(-1.0),
             ..CholeskySymbolicParams::default()
@@ -33,7 +35,8 @@ impl Elimination {
         Ok(Elimination { symbolic: Arc::new(symbolic) })
     }
 
-    /// The diagonal of a factor, in the order of elimination; `None` for a factor that is not made by supernodes.
+    /// The diagonal of a factor, in the order of elimination; `None` for a factor that is not made by
+    /// supernodes.
     pub(crate) fn diagonal(&self, values: &[f64]) -> Option<Vec<f64>> {
         let SymbolicCholeskyRaw::Supernodal(nodes) = self.symbolic.raw() else { return None };
         let mut diagonal = Vec::with_capacity(self.symbolic.nrows());

@@ -12,13 +12,14 @@ use std::f64::consts::TAU;
 
 /// Number of eigenvalues of K φ = λ M φ below `shift`, (rad/s)², rigid motions included: a Sturm count.
 ///
-/// By Sylvester's law of inertia it is the number of negative pivots of K − σM = Pᵀ L B Lᵀ P, whatever P and L; B has blocks of one and two
-/// (Bunch and Kaufman's pivots, chosen within the supernodes of the factor). What rounding makes of the factor is looked at: refining a
-/// solution with it must converge, which is so just where no eigenvalue lies between the matrix and what was factorised in its place.
+/// By Sylvester's law of inertia it is the number of negative pivots of K − σM = Pᵀ L B Lᵀ P, whatever P and
+/// L; B has blocks of one and two (Bunch and Kaufman's pivots, chosen within the supernodes of the factor).
+/// What rounding makes of the factor is looked at: refining a solution with it must converge, which is so
+/// just where no eigenvalue lies between the matrix and what was factorised in its place.
 ///
 /// # Errors
-/// Matrices of different patterns, a mass matrix without a positive diagonal, a shift that lies too close to an eigenvalue for a certain answer, or no
-/// room for the factor.
+/// Matrices of different patterns, a mass matrix without a positive diagonal, a shift that lies too close to
+/// an eigenvalue for a certain answer, or no room for the factor.
 pub fn eigenvalues_below(
     stiffness: &SparseSymmetric,
     mass: &SparseSymmetric,
@@ -139,7 +140,8 @@ impl<'a> Indefinite<'a> {
         column.iter_mut().zip(&self.scale).for_each(|(c, s)| *c *= s);
     }
 
-    /// Largest ‖x − F⁻¹Ax‖ / ‖x‖ in the norm of M over a few steps, F being what was factorised: of F⁻¹(F − A), which must stay below one.
+    /// Largest ‖x − F⁻¹Ax‖ / ‖x‖ in the norm of M over a few steps, F being what was factorised: of F⁻¹(F −
+    /// A), which must stay below one.
     fn relative_error(&self, matrix: &SparseSymmetric, mass: &SparseSymmetric) -> f64 {
         // Not a number where the factor has overflown, and then the answer is none either.
         let norm = |x: &[f64]| mass.quadratic(x).sqrt();

@@ -1,7 +1,7 @@
 //! The lowest modes of a sparse pencil.
 //!
-//! faer's own partial eigensolver is as exact, must be told how many modes there are, and is faster only where there are ten or more
-//! (`docs/records/2026-11-26-partial-eigensolver.md`).
+//! faer's own partial eigensolver is as exact, must be told how many modes there are, and is faster only
+//! where there are ten or more (`docs/records/2026-11-26-partial-eigensolver.md`).
 
 use crate::sparse::SparseError;
 use crate::sparse_inertia::count_below;
@@ -26,18 +26,21 @@ pub struct SparseModes {
     pub eigenvalues: Vec<f64>,
     /// Their shapes, Ξᵀ M Ξ = I.
     pub shapes: Vec<Vec<f64>>,
-    /// Largest (1 + s/λ) ‖(K + sM)⁻¹(Kφ − λMφ)‖ in the norm of M over the modes: what bounds the relative error of λ.
+    /// Largest (1 + s/λ) ‖(K + sM)⁻¹(Kφ − λMφ)‖ in the norm of M over the modes: what bounds the relative
+    /// error of λ.
     pub residual: f64,
     /// The shift s of the factor.
     pub shift: f64,
     /// The factor of K + s M.
     pub factor: SparseCholesky,
-    /// A shift between the last mode and the next, (rad/s)²: below it no mode is missing, by count. Infinite where these are all modes there are.
+    /// A shift between the last mode and the next, (rad/s)²: below it no mode is missing, by count. Infinite
+    /// where these are all modes there are.
     pub complete_below: f64,
 }
 
 impl SparseModes {
-    /// Counts the eigenvalues below [`complete_below`](Self::complete_below) anew and compares with the modes at hand.
+    /// Counts the eigenvalues below [`complete_below`](Self::complete_below) anew and compares with the modes
+    /// at hand.
     ///
     /// # Errors
     /// [`SparseError::Missing`] where the count is another one; no certain count.
@@ -59,16 +62,19 @@ fn missing(found: usize, counted: usize, below: f64) -> SparseError {
     SparseError::Missing { found, counted, hz: below.max(0.0).sqrt() / TAU }
 }
 
-/// Vectors that are found at a time; of modes of higher multiplicity some are missed at first, and found after the count.
+/// Vectors that are found at a time; of modes of higher multiplicity some are missed at first, and found
+/// after the count.
 const BLOCK: usize = 4;
 
 /// The Krylov space ends at so many vectors for each mode that is wanted, and some.
 const VECTORS_A_MODE: usize = 8;
 
-/// Modes below the wanted frequency that are looked for at the most: a vector of each is held, and every step works on all.
+/// Modes below the wanted frequency that are looked for at the most: a vector of each is held, and every step
+/// works on all.
 const MOST_MODES: usize = 400;
 
-/// Modes known to lie below the wanted frequency from which on all of them are counted before the search goes on: of moduli a million times too small every vector is such a mode.
+/// Modes known to lie below the wanted frequency from which on all of them are counted before the search goes
+/// on: of moduli a million times too small every vector is such a mode.
 const MANY_MODES: usize = 64;
 
 /// Residual of a Ritz pair of (K + sM)⁻¹M, relative to its value, at which it counts as found.
@@ -77,27 +83,31 @@ const CONVERGED: f64 = 1e-10;
 /// Largest residual of a mode that is handed out: half of it is the most that its frequency can be off by.
 const RESIDUAL_ALLOWED: f64 = 1e-4;
 
-/// Modes closer than this share of their eigenvalue are handed out together: the count is taken in a wider gap, where it is certain.
+/// Modes closer than this share of their eigenvalue are handed out together: the count is taken in a wider
+/// gap, where it is certain.
 const GAP: f64 = 1e-3;
 
-/// Where the count says that modes are missing, at most so many new start vectors are brought in at a time, so many times, and each time the search
-/// goes on for as many steps before it asks again.
+/// Where the count says that modes are missing, at most so many new start vectors are brought in at a time,
+/// so many times, and each time the search goes on for as many steps before it asks again.
 const FRESH: usize = 16;
 const FRESH_BLOCKS: usize = 4;
 const STEPS_A_FRESH_BLOCK: usize = 12;
 
-/// The lowest modes of K φ = λ M φ by block Lanczos on (K + sM)⁻¹M with full reorthogonalisation, s = `shift` > 0, none left out.
+/// The lowest modes of K φ = λ M φ by block Lanczos on (K + sM)⁻¹M with full reorthogonalisation,
+/// s = `shift` > 0, none left out.
 ///
-/// `rigid` are the motions that cost no energy, known beforehand; the search goes on in their complement, so that no zero of multiplicity
-/// six competes with the modes. They need not be normalised. `progress` is told how many modes are found, of how many wanted.
+/// `rigid` are the motions that cost no energy, known beforehand; the search goes on in their complement, so
+/// that no zero of multiplicity six competes with the modes. They need not be normalised. `progress` is told
+/// how many modes are found, of how many wanted.
 ///
-/// Lanczos alone may pass over a mode: one that its start vectors do not hold, or the fifth of five equal ones. So the eigenvalues below a shift just above the
-/// last mode are counted by the signs of a second factor's pivots ([`eigenvalues_below`](crate::eigenvalues_below)); if more are
-/// counted than were found, the search goes on with
-/// new start vectors beside the old, and ends with an error if they do not turn up.
+/// Lanczos alone may pass over a mode: one that its start vectors do not hold, or the fifth of five equal
+/// ones. So the eigenvalues below a shift just above the last mode are counted by the signs of a second
+/// factor's pivots ([`eigenvalues_below`](crate::eigenvalues_below)); if more are counted than were found,
+/// the search goes on with new start vectors beside the old, and ends with an error if they do not turn up.
 ///
 /// # Errors
-/// A K + sM that is not positive definite, no convergence, more than 400 modes, residuals that are too large, modes that the count says are missing.
+/// A K + sM that is not positive definite, no convergence, more than 400 modes, residuals that are too large,
+/// modes that the count says are missing.
 pub fn lowest_modes(
     stiffness: &SparseSymmetric,
     mass: &SparseSymmetric,
@@ -192,8 +202,8 @@ pub fn lowest_modes(
     }
 }
 
-/// How many of the first Ritz pairs have converged: their residuals are made of what the newest vectors, from `first_new` on, have outside the space, of which
-/// `gram` holds the products.
+/// How many of the first Ritz pairs have converged: their residuals are made of what the newest vectors, from
+/// `first_new` on, have outside the space, of which `gram` holds the products.
 fn converged(ritz: &[RitzPair], gram: &[Vec<f64>], first_new: usize) -> usize {
     let residual_of = |pair: &RitzPair| {
         let weights = &pair.vector[first_new..];
@@ -213,7 +223,8 @@ struct Census {
 }
 
 impl Census {
-    /// How many new start vectors a space of `size` vectors needs beside a block of `block` to find what is missing; none while the last ones are still at work.
+    /// How many new start vectors a space of `size` vectors needs beside a block of `block` to find what is
+    /// missing; none while the last ones are still at work.
     ///
     /// # Errors
     /// More modes than counted, or modes that do not turn up.
@@ -253,7 +264,8 @@ fn below(eigenvalues: &[f64], limit: f64) -> usize {
     eigenvalues.iter().filter(|value| **value <= limit).count()
 }
 
-/// How many of the modes found so far are handed out, and a shift in the gap behind them; `None` while no mode beyond such a gap is known.
+/// How many of the modes found so far are handed out, and a shift in the gap behind them; `None` while no
+/// mode beyond such a gap is known.
 fn complete_set(eigenvalues: &[f64], up_to: f64, at_least: usize) -> Option<(usize, f64)> {
     let least = below(eigenvalues, up_to).max(at_least);
     (least..eigenvalues.len()).find_map(|count| {
@@ -311,8 +323,9 @@ fn modes(
             shape.iter_mut().zip(vector).for_each(|(s, v)| *s += weight * v);
         }
         let eigenvalue = 1.0 / pair.value - shift;
-        // K φ as it stands, carried through the factor: what is left of Kφ − λMφ as a motion. Unsmoothed it is mostly the rounding of
-        // stiffness that cancels, which grows with the finest element and says nothing of the mode.
+        // K φ as it stands, carried through the factor: what is left of Kφ − λMφ as a motion. Unsmoothed it
+        // is mostly the rounding of stiffness that cancels, which grows with the finest element and says
+        // nothing of the mode.
         let (mut left, inertia) = (stiffness.multiply(&shape), space.mass.multiply(&shape));
         left.iter_mut().zip(&inertia).for_each(|(f, m)| *f -= eigenvalue * m);
         factor.solve_in_place(&mut left);

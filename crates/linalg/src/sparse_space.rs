@@ -14,7 +14,8 @@ impl Space<'_> {
         self.vectors.iter().map(|(_, image)| dot(image, vector)).collect()
     }
 
-    /// (K + sM)⁻¹M of the newest vectors, those of `block`: adds their components in the space to `columns`, and returns what lies outside.
+    /// (K + sM)⁻¹M of the newest vectors, those of `block`: adds their components in the space to `columns`,
+    /// and returns what lies outside.
     pub(crate) fn images(
         &self,
         factor: &SparseCholesky,

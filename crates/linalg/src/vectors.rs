@@ -6,7 +6,8 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Numbers from 0 to below 1, the same on every machine: a linear congruential generator of 64 bits, of which the upper 53 are taken.
+/// Numbers from 0 to below 1, the same on every machine: a linear congruential generator of 64 bits, of which
+/// the upper 53 are taken.
 #[derive(Debug, Clone)]
 pub struct Uniform(u64);
 
@@ -23,7 +24,8 @@ impl Uniform {
     }
 }
 
-/// Two independent standard normal numbers (Marsaglia's polar method) from numbers that are uniform between 0 and 1.
+/// Two independent standard normal numbers (Marsaglia's polar method) from numbers that are uniform between 0
+/// and 1.
 pub fn normal_pair(mut uniform: impl FnMut() -> f64) -> (f64, f64) {
     loop {
         let (u, v) = (2.0 * uniform() - 1.0, 2.0 * uniform() - 1.0);

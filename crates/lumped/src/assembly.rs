@@ -24,8 +24,9 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 use turned::Turned;
 
-/// The assembly as its modes have it: bodies with their known masses, and joints; the springs of supports where damping ratios are those of the assembly as it
-/// stands, otherwise none; no effects but those that rebuild a beam body (its shear, its stiffness factor).
+/// The assembly as its modes have it: bodies with their known masses, and joints; the springs of supports
+/// where damping ratios are those of the assembly as it stands, otherwise none; no effects but those that
+/// rebuild a beam body (its shear, its stiffness factor).
 ///
 /// Coordinates are (y, θ) of each rigid body's centre of gravity, y of a body that does not rotate, and
 /// (y, θ) of every node of a beam, in the order of the fixture's bodies.
@@ -45,16 +46,19 @@ pub struct Assembly {
     plain: Option<Arc<Plain>>,
 }
 
-/// An assembly without the effects that rebuild a beam, whose viscous matrix is that of the assembly with them.
+/// An assembly without the effects that rebuild a beam, whose viscous matrix is that of the assembly with
+/// them.
 #[derive(Debug, Clone)]
 struct Plain {
     assembly: Assembly,
-    /// (Mξ_r)ᵀ φ_k of its own mode r, row by row, and the rebuilt one k: by its square the one's viscosity is the other's.
+    /// (Mξ_r)ᵀ φ_k of its own mode r, row by row, and the rebuilt one k: by its square the one's viscosity is
+    /// the other's.
     shares: Vec<f64>,
 }
 
 impl Plain {
-    /// φᵀ C φ of every rebuilt mode: C = Σ v_r (Mξ_r)(Mξ_r)ᵀ over the modes of an assembly as this one, so `damped`.
+    /// φᵀ C φ of every rebuilt mode: C = Σ v_r (Mξ_r)(Mξ_r)ᵀ over the modes of an assembly as this one, so
+    /// `damped`.
     fn viscous_diagonal(&self, damped: &[ModeDamping]) -> Vec<f64> {
         let mut all = vec![0.0; damped.len()];
         for (row, mode) in self.shares.chunks_exact(damped.len()).zip(damped) {
@@ -68,14 +72,17 @@ impl Assembly {
     /// Builds matrices and modes, beams meshed finely enough for `highest_hz`.
     ///
     /// # Errors
-    /// [`LumpedError::Modes`] where the eigenproblem fails, as it does for impossible masses; [`LumpedError::TooFine`].
+    /// [`LumpedError::Modes`] where the eigenproblem fails, as it does for impossible masses;
+    /// [`LumpedError::TooFine`].
     pub fn new(fixture: &Fixture, highest_hz: f64) -> Result<Self, LumpedError> {
         Assembly::by(fixture, highest_hz, |_| Vec::new())
     }
 
-    /// As [`Assembly::new`] for responses within the band, at a fraction of the cost: modes of meshed beams by [`condensed_modes`](crate::condensed::condensed_modes).
+    /// As [`Assembly::new`] for responses within the band, at a fraction of the cost: modes of meshed beams
+    /// by [`condensed_modes`](crate::condensed::condensed_modes).
     pub(crate) fn condensed(fixture: &Fixture, highest_hz: f64) -> Result<Self, LumpedError> {
-        // The viscous matrix of a beam that is rebuilt is Σ v (Mξ)(Mξ)ᵀ: where v grows with λ, the least that modes are not orthogonal by counts.
+        // The viscous matrix of a beam that is rebuilt is Σ v (Mξ)(Mξ)ᵀ: where v grows with λ, the least that
+        // modes are not orthogonal by counts.
         let by_stiffness = matches!(damping_law(fixture.damping()), DampingLaw::Rayleigh { .. });
         Assembly::by(fixture, highest_hz, |places| if by_stiffness { Vec::new() } else { stretches(places) })
     }
@@ -255,7 +262,8 @@ impl Assembly {
         self.basis.eigenvalues().iter().map(|l| l.max(0.0).sqrt() / TAU).collect()
     }
 
-    /// The modes that have a damping ratio of their own, by place: not those as rigid, nor those of a suspension.
+    /// The modes that have a damping ratio of their own, by place: not those as rigid, nor those of a
+    /// suspension.
     pub fn elastic_modes(&self) -> &[usize] {
         &self.elastic
     }
@@ -265,7 +273,8 @@ impl Assembly {
         &self.law
     }
 
-    /// The row vector t that reads the motion at `station` from the coordinates (and spreads a load over them).
+    /// The row vector t that reads the motion at `station` from the coordinates (and spreads a load over
+    /// them).
     pub fn station_row(&self, station: &Station) -> Vec<f64> {
         let mut row = vec![0.0; self.order];
         let mut read = Vec::with_capacity(2);
@@ -329,7 +338,8 @@ fn is_one_free_body(fixture: &Fixture) -> bool {
         && !in_the_modes(fixture)
 }
 
-/// The fixture's only body where that is a beam without known masses, and its name. Supports are no part of the free assembly.
+/// The fixture's only body where that is a beam without known masses, and its name. Supports are no part of
+/// the free assembly.
 fn free_beam(fixture: &Fixture, places: &[Coordinates]) -> Option<(UniformBeam, String)> {
     let ([body], [Coordinates::Beam { mesh, .. }]) = (fixture.bodies(), places) else { return None };
     let BodyKind::Beam(beam) = &body.kind else { return None };

@@ -26,8 +26,8 @@ impl BarShape {
         (deflection + slope * (offset - inside), slope)
     }
 
-    // The symmetric form cos(βξ)/cos(βL/2) + cosh(βξ)/cosh(βL/2) is free of the cancellation in the usual one;
-    // it reaches 2 at the ends, which is unit mean square.
+    // The symmetric form cos(βξ)/cos(βL/2) + cosh(βξ)/cosh(βL/2) is free of the cancellation in the usual
+    // one; it reaches 2 at the ends, which is unit mean square.
     fn inside(&self, offset: f64) -> (f64, f64) {
         let beta = ROOT / self.length;
         let (c, ch) = ((0.5 * ROOT).cos(), (0.5 * ROOT).cosh());

@@ -1,4 +1,5 @@
-//! What stands between the structure and a recorded value: where sensors sit, their masses, gains, delays, window.
+//! What stands between the structure and a recorded value: where sensors sit, their masses, gains, delays,
+//! window.
 
 use crate::effects::{Action, SignalFilter, actions};
 use crate::{LumpedError, Station};
@@ -44,7 +45,8 @@ impl Reading {
 }
 
 impl Reading {
-    /// Whether the signals of another reading pass the same gains, delays and filters, wherever they are taken.
+    /// Whether the signals of another reading pass the same gains, delays and filters, wherever they are
+    /// taken.
     pub fn has_signals_of(&self, other: &Reading) -> bool {
         let (here, there) = (self, other);
         here.gain == there.gain && here.delay == there.delay && here.filters == there.filters
@@ -160,8 +162,9 @@ fn reading(fixture: &Fixture, effects: &[Action], pair: &FrfPair) -> Result<Read
     Ok(Reading { output, input, load, gain, delay, filters })
 }
 
-/// The power with which what a channel does to its signal enters an FRF: 1 of its own response, of what all responses have in common and of its own record, which multiply it, −1 of its
-/// own reference and of the force of all references, which divide it, 0 of what it does not pass.
+/// The power with which what a channel does to its signal enters an FRF: 1 of its own response, of what all
+/// responses have in common and of its own record, which multiply it, −1 of its own reference and of the
+/// force of all references, which divide it, 0 of what it does not pass.
 pub fn signal_power(channel: &Place, pair: &FrfPair) -> i32 {
     match channel {
         Place::Response(name) => i32::from(pair.response.is_named(name)),

@@ -1,18 +1,23 @@
 //! Modes of meshed beams from about half of their coordinates.
 //!
-//! A mesh fine enough for a band has many more modes than the band, and the eigenproblem costs the cube of their number. Here each stretch of elements moves as its ends
-//! make it follow statically, Ψ = −K_ii⁻¹ K_ib (Guyan 1965), and besides by motions of its inside alone, its ends held; stiffness couples none of these with Ψ. What
-//! the inside answers to its own inertia while all of it moves as a polynomial p of low degree, K_ii⁻¹ M p, is kept. Motions that are orthogonal to these by K_ii feel nothing
-//! of that inertia: they are set aside as modes by themselves, far above the band. They are still among the modes, so that every place yields statically to a force as it
-//! does in the whole mesh; only what inertia couples of the two is left out. Craig and Bampton (1968) keep modes of the held inside instead, which take many more to follow
-//! a motion that is smooth across the ends.
+//! A mesh fine enough for a band has many more modes than the band, and the eigenproblem costs the cube of
+//! their number. Here each stretch of elements moves as its ends make it follow statically, Ψ = −K_ii⁻¹ K_ib
+//! (Guyan 1965), and besides by motions of its inside alone, its ends held; stiffness couples none of these
+//! with Ψ. What the inside answers to its own inertia while all of it moves as a polynomial p of low degree,
+//! K_ii⁻¹ M p, is kept. Motions that are orthogonal to these by K_ii feel nothing of that inertia: they are
+//! set aside as modes by themselves, far above the band. They are still among the modes, so that every place
+//! yields statically to a force as it does in the whole mesh; only what inertia couples of the two is left
+//! out. Craig and Bampton (1968) keep modes of the held inside instead, which take many more to follow a
+//! motion that is smooth across the ends.
 //!
-//! Of random beams with masses, supports and shear, natural frequencies up to twice the band are within 1e-6 of the whole mesh's, mostly within 1e-9, and residues in
-//! the band within 3e-5 of that of a rigid motion, mostly 1e-8.
+//! Of random beams with masses, supports and shear, natural frequencies up to twice the band are within 1e-6
+//! of the whole mesh's, mostly within 1e-9, and residues in the band within 3e-5 of that of a rigid motion,
+//! mostly 1e-8.
 
 use jointscope_linalg::{Cholesky, EigenError, ModalBasis, dot, generalized_symmetric_eigen};
 
-/// Elements of a stretch at most: together with [`KEPT`], what is set aside stays as few coordinates as the eigenproblem has a fast way for.
+/// Elements of a stretch at most: together with [`KEPT`], what is set aside stays as few coordinates as the
+/// eigenproblem has a fast way for.
 pub(crate) const LONGEST: usize = 7;
 /// Motions kept of each stretch's inside: those that loads of constant to cubic course along it lead to.
 const KEPT: usize = 4;
@@ -32,14 +37,16 @@ struct Condensed {
     inside: std::ops::Range<usize>,
     /// Ψ, a row for each coordinate of the inside over the four of the ends.
     static_motions: Vec<[f64; 4]>,
-    /// Motions of the inside alone, one after the other, those that are kept first; of unit stiffness, then of unit mass.
+    /// Motions of the inside alone, one after the other, those that are kept first; of unit stiffness, then
+    /// of unit mass.
     own: Vec<Vec<f64>>,
     /// Eigenvalues of those that are set aside.
     aside: Vec<f64>,
 }
 
-/// Solves K φ = λ M φ with `stretches` condensed, as far as they are not coupled but through their ends: as many modes as coordinates. Those in the
-/// band of a mesh are its own; those far beyond are combinations of its own that yield together as they do, and orthogonal by M among what was set aside or among the rest
+/// Solves K φ = λ M φ with `stretches` condensed, as far as they are not coupled but through their ends: as
+/// many modes as coordinates. Those in the band of a mesh are its own; those far beyond are combinations of
+/// its own that yield together as they do, and orthogonal by M among what was set aside or among the rest
 /// only.
 ///
 /// # Errors
@@ -94,7 +101,8 @@ enum Motion<'a> {
 }
 
 impl Condensed {
-    /// `None` where there is nothing to set aside, where its inside is coupled with anything but its ends, or where that does not resist every motion.
+    /// `None` where there is nothing to set aside, where its inside is coupled with anything but its ends, or
+    /// where that does not resist every motion.
     fn of(order: usize, mass: &[f64], stiffness: &[f64], stretch: &Stretch) -> Option<Self> {
         let inside = stretch.first + 2..stretch.first + 2 * stretch.nodes.len() - 2;
         let whole = inside.start - 2..inside.end + 2;
@@ -222,7 +230,8 @@ fn monomial(i: usize, x: f64, length: f64, power: usize) -> f64 {
     }
 }
 
-/// An orthonormal basis of all vectors of `count` entries, the first of them a basis of the `given` ones, by Householder's reflections; `None` where those depend on one another.
+/// An orthonormal basis of all vectors of `count` entries, the first of them a basis of the `given` ones, by
+/// Householder's reflections; `None` where those depend on one another.
 fn orthonormal(count: usize, given: impl Iterator<Item = Vec<f64>>) -> Option<Vec<Vec<f64>>> {
     let mut mirrors: Vec<Vec<f64>> = Vec::new();
     for mut vector in given {
@@ -325,7 +334,8 @@ mod tests {
 
     #[test]
     fn a_stretch_whose_inside_is_tied_to_something_else_is_left_as_it_is() {
-        // Five masses of 1 kg in a row, in both directions, each on springs to its neighbours; something is tied to the middle one.
+        // Five masses of 1 kg in a row, in both directions, each on springs to its neighbours; something is
+        // tied to the middle one.
         let order = 12;
         let mass: Vec<f64> = (0..order * order).map(|e| f64::from(u8::from(e % (order + 1) == 0))).collect();
         let mut stiffness = vec![0.0; order * order];

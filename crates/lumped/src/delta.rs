@@ -6,7 +6,8 @@ use crate::point_law::{PointLaw, relaxed};
 use jointscope_fixture::{Effect, Fixture};
 use num_complex::Complex64;
 
-/// δ(s) of an effect, in the unit of its place: nothing missing is zero, but of what is in series it is infinite.
+/// δ(s) of an effect, in the unit of its place: nothing missing is zero, but of what is in series it is
+/// infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Delta {
     /// The dynamic stiffness of a component, or of a spring in series with a joint.
@@ -36,7 +37,8 @@ pub enum Delta {
 }
 
 impl Delta {
-    /// δ of an effect of `fixture`; `None` of one that changes more than a scalar a line, and of a sensor's mass, whose δ depends on the FRF.
+    /// δ of an effect of `fixture`; `None` of one that changes more than a scalar a line, and of a sensor's
+    /// mass, whose δ depends on the FRF.
     pub fn of(fixture: &Fixture, effect: &Effect) -> Option<Self> {
         match action(fixture, effect)? {
             Action::Through { law, .. } => Some(Delta::Stiffness(law)),

@@ -81,7 +81,8 @@ pub(crate) struct Interface {
     pub dof: Dof,
     pub stiffness: f64,
     pub damping: f64,
-    /// Zero where it turns at the joint's very end, one where it yields all along the foot of a joint that bends.
+    /// Zero where it turns at the joint's very end, one where it yields all along the foot of a joint that
+    /// bends.
     pub spread: f64,
 }
 

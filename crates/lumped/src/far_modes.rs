@@ -6,8 +6,8 @@ use num_complex::Complex64;
 
 /// Powers of s that are kept.
 const POWERS: usize = 9;
-/// A mode is far where |s|(|s| + viscous) is at most this share of its stiffness over the whole band: with the powers above its
-/// term is then right to about 1e-7.
+/// A mode is far where |s|(|s| + viscous) is at most this share of its stiffness over the whole band: with
+/// the powers above its term is then right to about 1e-7.
 const SHARE: f64 = 0.04;
 /// Far modes for which a series pays.
 const ENOUGH: usize = 2 * POWERS;
@@ -42,8 +42,9 @@ impl FarModes {
         self.series.binary_search_by_key(&index, |(mode, _)| *mode).is_ok()
     }
 
-    /// Sums of `products` of participations (a row over `count` entries for each mode) with the series' coefficients: a real row for
-    /// each power of s and, where there is structural damping, an imaginary one after each.
+    /// Sums of `products` of participations (a row over `count` entries for each mode) with the series'
+    /// coefficients: a real row for each power of s and, where there is structural damping, an imaginary one
+    /// after each.
     pub(crate) fn rows(&self, products: &[f64], count: usize) -> Vec<f64> {
         if self.series.iter().all(|(_, coefficients)| coefficients.iter().all(|c| c.im == 0.0)) {
             let mut rows = vec![0.0; POWERS * count];

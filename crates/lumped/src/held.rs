@@ -1,7 +1,8 @@
 //! Supports: springs and dashpots to ground, and which of them the modes hold.
 //!
-//! Damping ratios of an assembly as it stands are those of its modes on their supports: the supports' springs are then a part of the matrices that these modes
-//! belong to. Otherwise, and their dashpots always, supports are a change of low rank.
+//! Damping ratios of an assembly as it stands are those of its modes on their supports: the supports' springs
+//! are then a part of the matrices that these modes belong to. Otherwise, and their dashpots always, supports
+//! are a change of low rank.
 
 use crate::Station;
 use jointscope_fixture::{Damping, Dof, Fixture, RatiosOf};

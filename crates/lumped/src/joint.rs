@@ -110,17 +110,20 @@ impl JointDynamics {
         self.mass != 0.0
     }
 
-    /// The length over which its far end's motion is compared with its near end's: with what an effect adds, or as the modes have it.
+    /// The length over which its far end's motion is compared with its near end's: with what an effect adds,
+    /// or as the modes have it.
     pub(crate) fn lengths(&self) -> (f64, f64) {
         (self.length + self.extra_length, self.length)
     }
 
-    /// The part that the modes of the free assembly hold: k(1 + iη) of the fixture on d, without its viscous damping.
+    /// The part that the modes of the free assembly hold: k(1 + iη) of the fixture on d, without its viscous
+    /// damping.
     pub(crate) fn in_the_modes(&self) -> ComplexMatrix2 {
         self.nominal.to_complex().scale(Complex64::new(1.0, self.base_loss))
     }
 
-    /// The stiffness at s = iω (or decay + iω) on d = u_to − R·u_from of a joint without mass, effects included.
+    /// The stiffness at s = iω (or decay + iω) on d = u_to − R·u_from of a joint without mass, effects
+    /// included.
     #[inline(always)]
     pub(crate) fn on_relative_motion<T: Lines>(&self, s: T) -> Matrix2<T> {
         let length = self.length + self.extra_length;
@@ -143,7 +146,8 @@ impl JointDynamics {
         stiffness
     }
 
-    /// The dynamic stiffness at s = iω (or decay + iω) on the motions of both ends, effects and mass included.
+    /// The dynamic stiffness at s = iω (or decay + iω) on the motions of both ends, effects and mass
+    /// included.
     #[inline(always)]
     pub(crate) fn on_both_ends<T: Lines>(&self, s: T) -> TwoEnds<T> {
         // Interfaces are springs in series with a beam's ends.
@@ -163,9 +167,10 @@ impl JointDynamics {
 
     /// What the slip of an interface moves the joint's end by against its body, in y and in θ.
     ///
-    /// A foot that a layer holds along its length is a beam on an elastic foundation. At the edge of a long one, with β = (k'/4EI)^¼, a moment turns it by M/(EIβ) and moves
-    /// it by M/(2EIβ²) (Hetényi 1946): it turns on k = EIβ about a centre 1/(2β) = EI/(2k) behind the edge. What a force moves it by beyond that, a
-    /// length of 1/(2β) in bending, is left out.
+    /// A foot that a layer holds along its length is a beam on an elastic foundation. At the edge of a long
+    /// one, with β = (k'/4EI)^¼, a moment turns it by M/(EIβ) and moves it by M/(2EIβ²) (Hetényi 1946): it
+    /// turns on k = EIβ about a centre 1/(2β) = EI/(2k) behind the edge. What a force moves it by beyond
+    /// that, a length of 1/(2β) in bending, is left out.
     fn slip(&self, interface: &Interface) -> [f64; 2] {
         let bending = self.bending_stiffness.unwrap_or(0.0);
         let reach = interface.spread * bending / (2.0 * interface.stiffness);
@@ -252,8 +257,8 @@ mod tests {
 
     #[test]
     fn the_mass_of_a_beam_is_right_to_the_closed_form_of_the_vibrating_beam() {
-        // Clamped far end: the receptance at the free near end of a cantilever is, with z = βL,
-        // y/F = L³/(EI z³) · (cosh z sin z − sinh z cos z) / (1 + cos z cosh z), here below its first resonance.
+        // Clamped far end: the receptance at the free near end of a cantilever is, with z = βL, y/F = L³/(EI
+        // z³) · (cosh z sin z − sinh z cos z) / (1 + cos z cosh z), here below its first resonance.
         let (ei, length, mass) = (2.07e11 * 3.67e-10, 0.06, 0.2);
         let joint = dynamics(r#"{"kind": "joint_mass", "place": "J", "mass": 0.2}"#);
         let z: f64 = 1.2;
@@ -307,7 +312,8 @@ mod tests {
 
     #[test]
     fn a_layer_along_a_foot_turns_it_as_an_elastic_foundation_does() {
-        // A long beam on a foundation of k' per length, at its edge (Hetényi 1946): θ = M/(EIβ), y = ±M/(2EIβ²), with β = (k'/4EI)^¼.
+        // A long beam on a foundation of k' per length, at its edge (Hetényi 1946): θ = M/(EIβ),
+        // y = ±M/(2EIβ²), with β = (k'/4EI)^¼.
         let bending = 2.07e11 * 3.67e-10;
         let beta = 400.0;
         let spring = bending * beta;

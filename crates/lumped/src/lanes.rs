@@ -1,6 +1,7 @@
 //! Spectral lines side by side: what the processor can compute at once.
 //!
-//! Everything that a line costs is written once, for a complex number [`Lines`], and runs on a single one or on [`Lanes`] of several.
+//! Everything that a line costs is written once, for a complex number [`Lines`], and runs on a single one or
+//! on [`Lanes`] of several.
 
 use jointscope_linalg::Field;
 use num_complex::Complex64;

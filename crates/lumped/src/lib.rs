@@ -1,11 +1,11 @@
 //! The lumped model (SIM) of an assembly: bodies, joints, supports and effects, solved by modal sums.
 //!
-//! Bodies are rigid (y, θ about the centre of gravity), rigid without rotation (y alone) or
-//! Euler–Bernoulli beams meshed with finite elements. Joints act on d = u_to − R·u_from. The dynamic stiffness
-//! of the free assembly, Z(s) = s²M + sC + K with s = iω, is diagonal in its undamped modes whatever its
-//! proportional damping, so its receptances are sums over modes: nothing is factorised per line. What is
-//! not proportional (supports, dashpots, every effect of the fixture file) is a change of low rank, V Δ Vᵀ, and
-//! enters by the Woodbury formula:
+//! Bodies are rigid (y, θ about the centre of gravity), rigid without rotation (y alone) or Euler–Bernoulli
+//! beams meshed with finite elements. Joints act on d = u_to − R·u_from. The dynamic stiffness of the free
+//! assembly, Z(s) = s²M + sC + K with s = iω, is diagonal in its undamped modes whatever its proportional
+//! damping, so its receptances are sums over modes: nothing is factorised per line. What is not proportional
+//! (supports, dashpots, every effect of the fixture file) is a change of low rank, V Δ Vᵀ, and enters by the
+//! Woodbury formula:
 //!
 //! H = G_oi − G_oV (I + Δ G_VV)⁻¹ Δ G_Vi.
 //!
@@ -13,10 +13,12 @@
 //! * [`Model`]: the assembly with supports and effects, and its receptances between any [`Station`]s;
 //! * [`StateSpace`]: the assembly over time, for what has no FRF;
 //! * [`MeasuringChain`]: what stands between the structure and a recorded value;
-//! * [`ModelledTest`]: the model with a test's channels; [`ContinuedFrfs`], its FRFs at complex frequencies; [`Tangent`], what small
-//!   changes of the fixture make of them; [`Vicinity`], tests of fixtures beside one another for differences;
+//! * [`ModelledTest`]: the model with a test's channels; [`ContinuedFrfs`], its FRFs at complex frequencies;
+//!   [`Tangent`], what small changes of the fixture make of them; [`Vicinity`], tests of fixtures beside one
+//!   another for differences;
 //! * [`Delta`]: what one effect makes of the scalar through which it acts, over frequency;
-//! * [`synthesize`], [`accelerances`]: the FRFs an analyser would record (eq 18, 41), measuring-chain effects included.
+//! * [`synthesize`], [`accelerances`]: the FRFs an analyser would record (eq 18, 41), measuring-chain effects
+//!   included.
 //!
 //! ```
 //! use jointscope_fixture::Fixture;

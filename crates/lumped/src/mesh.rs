@@ -9,11 +9,12 @@ use std::f64::consts::TAU;
 const ELEMENT_WAVE: f64 = 0.35;
 /// Fewest elements of a body, for bodies that hardly bend within the band.
 const FEWEST: f64 = 8.0;
-/// Parts of an element to which nodes are rounded at attachments that do not turn the beam: one that moves a little leaves the mesh, and with it the
-/// modes, as they are. What an element yields to a force between node and attachment is less than a hundredth of what it does at its middle; to a
-/// moment it would not be.
+/// Parts of an element to which nodes are rounded at attachments that do not turn the beam: one that moves a
+/// little leaves the mesh, and with it the modes, as they are. What an element yields to a force between node
+/// and attachment is less than a hundredth of what it does at its middle; to a moment it would not be.
 const PARTS: f64 = 8.0;
-/// A node is set at an attachment only if no other is nearer than this many of those parts: very short elements ruin the eigenproblem's accuracy.
+/// A node is set at an attachment only if no other is nearer than this many of those parts: very short
+/// elements ruin the eigenproblem's accuracy.
 const NEAREST: f64 = 2.0;
 /// Most elements of a body: its modes come from a dense eigenproblem.
 pub(crate) const MOST: usize = 256;
@@ -40,8 +41,8 @@ pub(crate) struct Attachment {
 }
 
 impl Mesh {
-    /// Meshes the beam from `from` to `to` with EI and mass per length, fine enough for `highest_hz`, with nodes all but at the `attachments` in their
-    /// order of importance.
+    /// Meshes the beam from `from` to `to` with EI and mass per length, fine enough for `highest_hz`, with
+    /// nodes all but at the `attachments` in their order of importance.
     ///
     /// # Errors
     /// The number of elements that would be needed, where that is more than [`MOST`].

@@ -9,11 +9,13 @@ use num_complex::Complex64;
 pub(crate) const FEW_MODES: usize = 12;
 /// A pivot smaller than this share of the largest element is a zero.
 const ZERO: f64 = 1e-15;
-/// A pivot smaller than this share of the largest element below it, both squared, asks for rows to be exchanged: what is eliminated by it grows as many times. Against the largest of
-/// all it may well be small: where a change is stiff, all that is left once it has been eliminated is.
+/// A pivot smaller than this share of the largest element below it, both squared, asks for rows to be
+/// exchanged: what is eliminated by it grows as many times. Against the largest of all it may well be small:
+/// where a change is stiff, all that is left once it has been eliminated is.
 const WEAK: f64 = 1e-6;
 
-/// (D(s) + V Δ(s) Vᵀ) q = Φ_i with D diagonal. The modes are mass-normalised, so that all elements have one unit and none needs scaling.
+/// (D(s) + V Δ(s) Vᵀ) q = Φ_i with D diagonal. The modes are mass-normalised, so that all elements have one
+/// unit and none needs scaling.
 #[derive(Debug, Clone)]
 pub(crate) struct ModalSystem {
     denominators: Vec<Denominator>,
@@ -34,8 +36,9 @@ impl ModalSystem {
         ModalSystem { outputs, inputs, change, denominators }
     }
 
-    /// Writes the receptance of each (output, input) at `s`, given Δ(s) with its elements that are not zero; `false` where a line has
-    /// no solution. `solution` is memory for the modes' coordinates, a row for each input.
+    /// Writes the receptance of each (output, input) at `s`, given Δ(s) with its elements that are not zero;
+    /// `false` where a line has no solution. `solution` is memory for the modes' coordinates, a row for each
+    /// input.
     #[inline(always)]
     pub(crate) fn at<T: Lines>(
         &self,
@@ -152,8 +155,8 @@ impl ModalSystem {
     }
 }
 
-/// L D Lᵀ of a symmetric matrix given by its lower triangle, in place of it: L below the diagonal and D⁻¹ on it; `false`, the matrix spoilt, where on
-/// any line a pivot is weak.
+/// L D Lᵀ of a symmetric matrix given by its lower triangle, in place of it: L below the diagonal and D⁻¹ on
+/// it; `false`, the matrix spoilt, where on any line a pivot is weak.
 #[inline(always)]
 fn factorize_symmetric<const N: usize, T: Lines>(matrix: &mut [[T; N]; N]) -> bool {
     let mut largest = matrix[0][0].sizes();

@@ -49,8 +49,8 @@ impl Model {
         Ok(Self::with(Assembly::condensed(fixture, highest_hz)?, fixture, highest_hz))
     }
 
-    /// The model of a fixture `moved` by next to nothing from this one's, modes to first order where they follow from those at hand, given also coordinate after
-    /// coordinate: for derivatives alone.
+    /// The model of a fixture `moved` by next to nothing from this one's, modes to first order where they
+    /// follow from those at hand, given also coordinate after coordinate: for derivatives alone.
     ///
     /// # Errors
     /// Those of [`Model::new`].

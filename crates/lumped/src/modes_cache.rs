@@ -1,7 +1,8 @@
 //! Undamped modes that were asked for a moment ago.
 //!
-//! A fit moves many quantities that leave the matrices alone (damping, where sensors sit, everything of the measuring
-//! chain), and the eigenproblem costs as much as hundreds of lines, that of a meshed beam more than all of them.
+//! A fit moves many quantities that leave the matrices alone (damping, where sensors sit, everything of the
+//! measuring chain), and the eigenproblem costs as much as hundreds of lines, that of a meshed beam more than
+//! all of them.
 
 use crate::condensed::{Stretch, condensed_modes};
 use jointscope_linalg::{EigenError, ModalBasis};
@@ -9,8 +10,9 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Problems remembered by a thread, the latest first; of meshed beams so many more, as far as their matrices have no more entries together than these: a fit of theirs comes back to
-/// where its last two sets of derivatives were taken.
+/// Problems remembered by a thread, the latest first; of meshed beams so many more, as far as their matrices
+/// have no more entries together than these: a fit of theirs comes back to where its last two sets of
+/// derivatives were taken.
 const KEPT: usize = 6;
 const KEPT_OF_BEAMS: usize = 32;
 const ENTRIES: usize = 1 << 18;

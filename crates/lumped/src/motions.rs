@@ -3,7 +3,8 @@
 use crate::term_station::TermStation;
 use crate::{Model, Station};
 
-/// Participations of what is read, of what is pushed and of what changes act through, a row over the modes each.
+/// Participations of what is read, of what is pushed and of what changes act through, a row over the modes
+/// each.
 #[derive(Debug, Clone)]
 pub(crate) struct Motions {
     pub outputs: Vec<Vec<f64>>,
@@ -23,7 +24,8 @@ impl Motions {
         }
     }
 
-    /// The pairs of motions whose G is needed: the wanted ones, then G_oV, G_VV, G_Vi where there is a change.
+    /// The pairs of motions whose G is needed: the wanted ones, then G_oV, G_VV, G_Vi where there is a
+    /// change.
     pub(crate) fn entries(&self, wanted: &[(usize, usize)]) -> Vec<[usize; 2]> {
         let (outputs, inputs, rank) = (self.outputs.len(), self.inputs.len(), self.change.len());
         let (first_input, first_change) = (outputs, outputs + inputs);

@@ -35,7 +35,8 @@ struct Prepared<'a> {
     products: Vec<f64>,
     /// Number of those entries.
     entries: usize,
-    /// Modes far above the band, the rows of their series, and how many of the denominators, the first ones, are not among them.
+    /// Modes far above the band, the rows of their series, and how many of the denominators, the first ones,
+    /// are not among them.
     far: Option<(FarModes, Vec<f64>)>,
     near: usize,
     /// In place of all that, where the modes are few and the change is of high rank.
@@ -53,7 +54,8 @@ struct Memory<T> {
     lu: LuWorkspace,
 }
 
-/// Blocks that are evaluated before any of them is read: few enough to stay in the processor's nearest memory.
+/// Blocks that are evaluated before any of them is read: few enough to stay in the processor's nearest
+/// memory.
 const BLOCKS: usize = 8;
 /// Rank from which a change is solved for in the coordinates of few modes.
 const HIGH_RANK: usize = 3;
@@ -91,12 +93,14 @@ impl<'a> Receptances<'a> {
 
     /// Writes the receptances at `s` = iω (or decay + iω) over `values`, in the order of the pairs.
     ///
-    /// Returns whether they are finite; they are not on an undamped resonance, nor at s = 0 of a free assembly.
+    /// Returns whether they are finite; they are not on an undamped resonance, nor at s = 0 of a free
+    /// assembly.
     pub fn at(&mut self, s: Complex64, values: &mut [Complex64]) -> bool {
         self.prepared.evaluate(s, &mut self.single, values) && values.iter().all(|v| v.is_finite())
     }
 
-    /// Hands the receptances at all of `s`, [`WIDTH`] lines at a time, to `read`, with the number of the first of them and their s.
+    /// Hands the receptances at all of `s`, [`WIDTH`] lines at a time, to `read`, with the number of the
+    /// first of them and their s.
     ///
     /// # Errors
     /// The number of the first line on which they are not finite.
@@ -115,14 +119,16 @@ impl<'a> Receptances<'a> {
         Ok(())
     }
 
-    /// Writes the receptances at up to [`BLOCKS`] times [`WIDTH`] of s over `values`, those of a block side by side. Compiled once: it holds every size of system for
-    /// every instruction set that the processor may have.
+    /// Writes the receptances at up to [`BLOCKS`] times [`WIDTH`] of s over `values`, those of a block side
+    /// by side. Compiled once: it holds every size of system for every instruction set that the processor may
+    /// have.
     #[inline(never)]
     fn evaluate_blocks(&mut self, s: &[Complex64], values: &mut [Lanes]) -> Result<(), usize> {
         pulp::Arch::new().dispatch(Blocks { receptances: self, s, values })
     }
 
-    /// Writes the receptances at all of `s` over `values`: those of the first pair on all lines, then of the second, …
+    /// Writes the receptances at all of `s` over `values`: those of the first pair on all lines, then of the
+    /// second, …
     ///
     /// # Errors
     /// The number of the first line on which they are not finite.
@@ -325,7 +331,8 @@ pub(crate) fn is_solved_by_modes(modes: usize, rank: usize) -> bool {
     modes <= FEW_MODES && rank >= HIGH_RANK
 }
 
-/// Overwrites `right`, a row over its columns for each station of the change, with (I + ΔG)⁻¹·right; `false` where a line has no solution.
+/// Overwrites `right`, a row over its columns for each station of the change, with (I + ΔG)⁻¹·right; `false`
+/// where a line has no solution.
 #[inline(always)]
 pub(crate) fn divided<T: Lines>(
     elements: &[(usize, usize)],
@@ -401,8 +408,9 @@ fn divide_small<T: Lines>(delta: &[T], g: &[T], right: &mut [T]) {
     }
 }
 
-/// Neighbours with one denominator (all rigid motions, above all) share one term of the sum: the distinct denominators, those of far modes
-/// last, each mode's place among them, and the number of those before the far ones.
+/// Neighbours with one denominator (all rigid motions, above all) share one term of the sum: the distinct
+/// denominators, those of far modes last, each mode's place among them, and the number of those before the
+/// far ones.
 pub(crate) fn merge(
     all: &[Denominator],
     is_far: impl Fn(usize) -> bool,

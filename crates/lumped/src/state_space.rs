@@ -11,10 +11,11 @@ use std::f64::consts::TAU;
 
 /// The assembly with its supports and linear effects as a first-order system ẋ = A x + b f.
 ///
-/// The states are modal coordinates z (of the free assembly, of bending blocks, and resonators' masses), their rates ż, and states of
-/// joints that relax or slip. Modes far above the band are left out. Structural damping of the fixture (`loss_factor`) is taken as the
-/// viscous damping that loses as much at each mode's own frequency, ζ = η/2. Effects that depend on amplitude are not part of it:
-/// they act on [`StateSpace::across`].
+/// The states are modal coordinates z (of the free assembly, of bending blocks, and resonators' masses),
+/// their rates ż, and states of joints that relax or slip. Modes far above the band are left out. Structural
+/// damping of the fixture (`loss_factor`) is taken as the viscous damping that loses as much at each mode's
+/// own frequency, ζ = η/2. Effects that depend on amplitude are not part of it: they act on
+/// [`StateSpace::across`].
 #[derive(Debug, Clone)]
 pub struct StateSpace {
     model: Model,
@@ -42,7 +43,8 @@ struct Equations {
 }
 
 impl StateSpace {
-    /// The fixture's assembly with its linear structural effects, beams meshed for motions up to `highest_hz`.
+    /// The fixture's assembly with its linear structural effects, beams meshed for motions up to
+    /// `highest_hz`.
     ///
     /// # Errors
     /// Modes that cannot be computed, an effect that is known by frequency only.
@@ -206,8 +208,9 @@ impl StateSpace {
         self.padded(&self.row(&TermStation::single(*station)), self.coordinates)
     }
 
-    /// The relative motion across a joint, d = u_to − R·u_from, deflection then rotation: for each the row that reads it, and the load b of
-    /// a force pair of 1 that drives it. `None` for a joint that does not exist.
+    /// The relative motion across a joint, d = u_to − R·u_from, deflection then rotation: for each the row
+    /// that reads it, and the load b of a force pair of 1 that drives it. `None` for a joint that does not
+    /// exist.
     pub fn across(&self, joint: &str) -> Option<[(Vec<f64>, Vec<f64>); 2]> {
         let index = self.lengths.iter().position(|(name, _)| name == joint)?;
         let [from, to] = self.ends[index];
@@ -263,7 +266,8 @@ struct LocalLaw {
     rates: Vec<Vec<f64>>,
 }
 
-/// Forces that resist each slip's rate by the rate of each: those of the joint's dashpots along them, and each one's own.
+/// Forces that resist each slip's rate by the rate of each: those of the joint's dashpots along them, and
+/// each one's own.
 fn slip_damping(law: &JointInTime, dashpots: &RealMatrix2) -> Vec<f64> {
     let along = |direction: &[f64; 2], other: &[f64; 2]| -> f64 {
         (0..2).map(|a| (0..2).map(|b| direction[a] * dashpots.at(a, b) * other[b]).sum::<f64>()).sum()

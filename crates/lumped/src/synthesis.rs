@@ -40,7 +40,8 @@ pub fn accelerances(
     ModelledTest::new(fixture, pairs, lines.hz()[lines.len() - 1], instrument)?.accelerances(lines)
 }
 
-/// A model with the channels of a test, ready to tell what would be recorded: on spectral lines, or anywhere on the plane of complex frequencies.
+/// A model with the channels of a test, ready to tell what would be recorded: on spectral lines, or anywhere
+/// on the plane of complex frequencies.
 #[derive(Debug, Clone)]
 pub struct ModelledTest {
     pub(crate) model: Model,
@@ -82,7 +83,8 @@ impl ModelledTest {
         Ok(ModelledTest { model, chain, stations, wanted, loads })
     }
 
-    /// Whether modes were found to first order beside others, as a [`Vicinity`](crate::Vicinity) does where it can.
+    /// Whether modes were found to first order beside others, as a [`Vicinity`](crate::Vicinity) does where
+    /// it can.
     pub fn is_first_order(&self) -> bool {
         self.model.is_first_order()
     }
@@ -107,8 +109,8 @@ impl ModelledTest {
     }
 }
 
-/// Recorded accelerances continued from the spectral lines, where s = iω, to complex frequencies: there lie a structure's poles, and the residues
-/// of the FRFs at them.
+/// Recorded accelerances continued from the spectral lines, where s = iω, to complex frequencies: there lie a
+/// structure's poles, and the residues of the FRFs at them.
 #[derive(Debug, Clone)]
 pub struct ContinuedFrfs<'a> {
     test: &'a ModelledTest,
@@ -119,12 +121,14 @@ pub struct ContinuedFrfs<'a> {
 }
 
 impl ContinuedFrfs<'_> {
-    /// Writes all FRFs at complex frequency `s`, rad/s, over `frfs`; `false` where they are not finite, as at a pole.
+    /// Writes all FRFs at complex frequency `s`, rad/s, over `frfs`; `false` where they are not finite, as at
+    /// a pole.
     pub fn at(&mut self, s: Complex64, frfs: &mut [Complex64]) -> bool {
         self.receptances.at(s + self.test.chain.decay(), &mut self.values) && self.recorded(s, frfs)
     }
 
-    /// As [`ContinuedFrfs::at`] at several frequencies side by side: all FRFs at the first, then at the second, …
+    /// As [`ContinuedFrfs::at`] at several frequencies side by side: all FRFs at the first, then at the
+    /// second, …
     pub fn at_each(&mut self, frequencies: &[Complex64], frfs: &mut [Complex64]) -> bool {
         let (count, decay) = (frequencies.len(), self.test.chain.decay());
         let read: Vec<Complex64> = frequencies.iter().map(|s| s + decay).collect();
@@ -242,7 +246,8 @@ fn record(
     let omegas = lines.hz().iter().map(|hz| TAU * hz.max(NEARLY_ZERO_HZ));
     let s: Vec<Complex64> = omegas.map(|omega| chain.s(omega)).collect();
     let count = lines.len();
-    // Real and imaginary parts apart, as many as fill the last block: the kernel then stores whole blocks, and nothing else in it is done line by line.
+    // Real and imaginary parts apart, as many as fill the last block: the kernel then stores whole blocks,
+    // and nothing else in it is done line by line.
     let padded = count.next_multiple_of(WIDTH);
     let mut parts = [vec![0.0; loads.len() * padded], vec![0.0; loads.len() * padded]];
     let [re, im] = &mut parts;

@@ -1,15 +1,19 @@
-//! Derivatives of recorded FRFs from the one solution at hand: no modes are solved for, and nothing per line is but once for all of them.
+//! Derivatives of recorded FRFs from the one solution at hand: no modes are solved for, and nothing per line
+//! is but once for all of them.
 //!
-//! A receptance of the free assembly is a sum over modes, G_pq = Σ a_pr a_qr / D_r with D_r = λ_r + iη_r + s v_r + s². What changes of a fixture make of participations
-//! and denominators is known from the modes to first order ([`AssemblyChange`](crate::assembly::AssemblyChange)), so that
+//! A receptance of the free assembly is a sum over modes, G_pq = Σ a_pr a_qr / D_r with D_r = λ_r + iη_r + s
+//! v_r + s². What changes of a fixture make of participations and denominators is known from the modes to
+//! first order ([`AssemblyChange`](crate::assembly::AssemblyChange)), so that
 //!
 //! dG_pq = Σ (da_pr a_qr + a_pr da_qr)/D_r − Σ a_pr a_qr dD_r/D_r²,
 //!
-//! real coefficients of functions of the line alone: a product of matrices. Supports and effects, V Δ Vᵀ, enter by R = (I + ΔG_VV)⁻¹ Δ G_V· on either side,
+//! real coefficients of functions of the line alone: a product of matrices. Supports and effects, V Δ Vᵀ,
+//! enter by R = (I + ΔG_VV)⁻¹ Δ G_V· on either side,
 //!
 //! dH = dG_oi − dG_oV R_i − R_oᵀ dG_Vi + R_oᵀ dG_VV R_i − g_oᵀ dΔ g_i, g = G_V· − G_VV R.
 //!
-//! Damping follows λ by its law, dv = τ dλ, in almost every change, and then dλ (1 + s τ)/D² is one function too.
+//! Damping follows λ by its law, dv = τ dλ, in almost every change, and then dλ (1 + s τ)/D² is one function
+//! too.
 
 mod rows;
 mod through;
@@ -29,7 +33,8 @@ use rows::{Coefficients, Rows, sums};
 use std::f64::consts::TAU;
 use through::Through;
 
-/// A model with the channels of a test on spectral lines, ready to tell what small changes of its fixture make of the recorded accelerances.
+/// A model with the channels of a test on spectral lines, ready to tell what small changes of its fixture
+/// make of the recorded accelerances.
 ///
 /// ```
 /// use jointscope_fixture::Fixture;
@@ -68,8 +73,8 @@ pub struct Tangent<'a> {
 }
 
 impl<'a> Tangent<'a> {
-    /// About the fixture, between the channels of `pairs`; `None` where it has no finite FRFs on these lines, for sensors that load what they measure, and for meshed
-    /// beams.
+    /// About the fixture, between the channels of `pairs`; `None` where it has no finite FRFs on these lines,
+    /// for sensors that load what they measure, and for meshed beams.
     pub fn new(
         fixture: Fixture,
         pairs: &'a [FrfPair],
@@ -80,8 +85,9 @@ impl<'a> Tangent<'a> {
         Tangent::of(fixture, test, (pairs, lines), instrument)
     }
 
-    /// [`Tangent::new`] where it takes less time than models of neighbouring fixtures: not where few modes and a change of high rank are solved in the modes' own
-    /// coordinates, which costs a line less than all entries of G that the change acts through.
+    /// [`Tangent::new`] where it takes less time than models of neighbouring fixtures: not where few modes
+    /// and a change of high rank are solved in the modes' own coordinates, which costs a line less than all
+    /// entries of G that the change acts through.
     pub fn where_it_pays(
         fixture: Fixture,
         pairs: &'a [FrfPair],
@@ -119,11 +125,12 @@ impl<'a> Tangent<'a> {
         Some(Tangent { fixture, pairs, instrument, test, motions, rows, lines, blocks, factors, through })
     }
 
-    /// Derivatives of the recorded accelerances by the parameter whose `step` leads to the fixture `moved`, of all FRFs or of `some` of them by place: all lines of the first, then of the
-    /// second, …
+    /// Derivatives of the recorded accelerances by the parameter whose `step` leads to the fixture `moved`,
+    /// of all FRFs or of `some` of them by place: all lines of the first, then of the second, …
     ///
-    /// The step is to be small against what makes the fixture's own numbers curve (a relative 1e-5 or less), not against a resonance's width. `None` where the change has no
-    /// derivative here: one of the measuring chain, or one that adds something to the model.
+    /// The step is to be small against what makes the fixture's own numbers curve (a relative 1e-5 or less),
+    /// not against a resonance's width. `None` where the change has no derivative here: one of the measuring
+    /// chain, or one that adds something to the model.
     pub fn toward(&self, moved: &Fixture, step: f64, some: Option<&[usize]>) -> Option<Vec<Complex64>> {
         let model = &self.test.model;
         let chain = MeasuringChain::of(moved, self.pairs, self.instrument).ok()?;

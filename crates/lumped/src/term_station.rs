@@ -6,7 +6,8 @@ use crate::Station;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TermStation {
     parts: [(f64, Station); 3],
-    /// What is subtracted because the modes hold it already acts on the rigid coordinates alone, without the bending of blocks.
+    /// What is subtracted because the modes hold it already acts on the rigid coordinates alone, without the
+    /// bending of blocks.
     pub rigid_only: bool,
 }
 

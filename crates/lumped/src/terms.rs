@@ -18,9 +18,11 @@ pub(crate) enum Term {
     Point { station: usize, law: PointLaw },
     /// A joint without mass, through the two stations that read its relative motion d.
     Relative { station: usize, joint: Box<JointDynamics> },
-    /// A joint with mass, through the four stations (y, θ) at its ends, less what the modes hold of it where they read the same motions.
+    /// A joint with mass, through the four stations (y, θ) at its ends, less what the modes hold of it where
+    /// they read the same motions.
     Ends { station: usize, joint: Box<JointDynamics>, held: Option<TwoEnds<Complex64>> },
-    /// What the modes hold of a joint already, taken out through the two stations that read d as the modes have it.
+    /// What the modes hold of a joint already, taken out through the two stations that read d as the modes
+    /// have it.
     TakenOut { station: usize, stiffness: ComplexMatrix2 },
 }
 

@@ -1,9 +1,11 @@
 //! Modes of one uniform free beam: a problem without dimensions, solved once for a mesh.
 //!
-//! With EI, mass per length and length taken out, the matrices of a free beam are always the same for one mesh, K̂ and M̂. Shear gives an element of
-//! length h the ratio Φ = 12EI/(κGA h²) and the stiffness (K̂ + ΦB̂)/(1 + Φ), B̂ acting on its nodes' rotations alone; rotary inertia adds ρI/(mL²)·R̂. Both
-//! are projected on the plain modes. Where all elements are equal, that is done once for all Φ, and a beam's modes are then those of two matrices of
-//! half the size, one of the shapes that are symmetric about the middle and one of the others.
+//! With EI, mass per length and length taken out, the matrices of a free beam are always the same for one
+//! mesh, K̂ and M̂. Shear gives an element of length h the ratio Φ = 12EI/(κGA h²) and the stiffness
+//! (K̂ + ΦB̂)/(1 + Φ), B̂ acting on its nodes' rotations alone; rotary inertia adds ρI/(mL²)·R̂. Both are
+//! projected on the plain modes. Where all elements are equal, that is done once for all Φ, and a beam's
+//! modes are then those of two matrices of half the size, one of the shapes that are symmetric about the
+//! middle and one of the others.
 
 use crate::LumpedError;
 use jointscope_beam::{
@@ -241,7 +243,8 @@ impl Dimensionless {
         let stiffness = mesh.assembled(|step| element_stiffness(1.0, step));
         let basis = generalized_symmetric_eigen(order, &mass, &stiffness)?;
         let mut eigenvalues = basis.eigenvalues().to_vec();
-        // The rigid motions come in any mixture; modes alternate between symmetric and not only if these do too.
+        // The rigid motions come in any mixture; modes alternate between symmetric and not only if these do
+        // too.
         eigenvalues[..2].fill(0.0);
         let node = |i: usize| mesh.node(i / 2) - 0.5;
         let mut shapes: Vec<f64> = (0..order).map(|i| if i % 2 == 0 { 1.0 } else { 0.0 }).collect();

@@ -47,8 +47,9 @@ impl Pole {
     }
 }
 
-/// Residual terms of an accelerance, by the power of frequency: the mass line (0), the upper residual (2), what modes below (−2) and far above (4) the band and
-/// phase errors (1) add; then those that modes close to the ends of the band need.
+/// Residual terms of an accelerance, by the power of frequency: the mass line (0), the upper residual (2),
+/// what modes below (−2) and far above (4) the band and phase errors (1) add; then those that modes close to
+/// the ends of the band need.
 const POWERS: [i32; 8] = [0, 2, -2, 1, 4, 6, -4, 8];
 /// Residual terms to begin with, and at the most.
 pub(crate) const TERMS: (usize, usize) = (5, POWERS.len());
@@ -61,7 +62,8 @@ pub(crate) fn power_of_term(term: usize) -> i32 {
     POWERS[term]
 }
 
-/// The values of all modes' accelerances and of the first `terms` residual terms at a line, those in powers of ω/`reference`.
+/// The values of all modes' accelerances and of the first `terms` residual terms at a line, those in powers
+/// of ω/`reference`.
 pub(crate) fn row(
     poles: &[Pole],
     terms: usize,

@@ -1,5 +1,6 @@
-//! How probable recorded features are at given sizes of a model's error: ln N(d; 0, C), with d the features less those of the model and C = S(τ) + J·Jᵀ their covariance, by errors of the
-//! model and of the recording and by the parameters of a linear model.
+//! How probable recorded features are at given sizes of a model's error: ln N(d; 0, C), with d the features
+//! less those of the model and C = S(τ) + J·Jᵀ their covariance, by errors of the model and of the recording
+//! and by the parameters of a linear model.
 
 use crate::errors::{ErrorSizes, SharedFeatures};
 use jointscope_linalg::Cholesky;

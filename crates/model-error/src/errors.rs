@@ -1,7 +1,10 @@
-//! How wrong a model may be: kinds of error with their scales, and the covariance that they make of the features.
+//! How wrong a model may be: kinds of error with their scales, and the covariance that they make of the
+//! features.
 //!
-//! Errors of different kinds are independent, and so are those of different modes. An error of a shape at a channel is common to all FRFs of that channel. An error of a
-//! damping ratio is one of the damping by which the shape's phases are turned too: what of the residues is in quadrature for that reason errs by the same share.
+//! Errors of different kinds are independent, and so are those of different modes. An error of a shape at a
+//! channel is common to all FRFs of that channel. An error of a damping ratio is one of the damping by which
+//! the shape's phases are turned too: what of the residues is in quadrature for that reason errs by the same
+//! share.
 
 use crate::matching::Pairing;
 use crate::modelled::ModelledModes;
@@ -13,7 +16,8 @@ use crate::settings::errors::{
 use crate::shapes::Shapes;
 use std::sync::Arc;
 
-/// Sizes of a model's error by kind, as relative standard deviations (0.003 is 0.3 %): what is known of them before, or what a recording says.
+/// Sizes of a model's error by kind, as relative standard deviations (0.003 is 0.3 %): what is known of them
+/// before, or what a recording says.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ErrorSizes {
     /// Of every natural frequency.
@@ -50,8 +54,10 @@ const UPPER: usize = 1;
 pub const GAIN: usize = 6;
 
 impl Default for ErrorSizes {
-    /// What lumped models of machined parts are wrong by: 0.3 % in natural frequencies, 10 % in damping ratios, 0.5 % in shapes, 0.05 % in quadrature, 0.1 % in
-    /// mass lines, 15 % in upper residuals, 1 % in gains. Meant as the scales of half-normal priors, of gains of a half-Cauchy one: fixed beforehand, not fitted.
+    /// What lumped models of machined parts are wrong by: 0.3 % in natural frequencies, 10 % in damping
+    /// ratios, 0.5 % in shapes, 0.05 % in quadrature, 0.1 % in mass lines, 15 % in upper residuals, 1 % in
+    /// gains. Meant as the scales of half-normal priors, of gains of a half-Cauchy one: fixed beforehand, not
+    /// fitted.
     fn default() -> Self {
         ErrorSizes {
             frequency: USUAL_FREQUENCY,
@@ -132,14 +138,15 @@ pub struct SharedFeatures {
     pub(crate) noise: Arc<[f64]>,
     /// What of the paired modes' residues is in quadrature because of the structure's damping, FRF by FRF.
     turned: Vec<f64>,
-    /// What of the features in quadrature would be otherwise if the structure's damping were distributed otherwise: all of it or nothing, as one unknown of size one. Empty where that is
-    /// not in question.
+    /// What of the features in quadrature would be otherwise if the structure's damping were distributed
+    /// otherwise: all of it or nothing, as one unknown of size one. Empty where that is not in question.
     distributed: Vec<(usize, f64)>,
     /// Place of the first residue among the compared features.
     first_residue: usize,
     /// By kind, the covariance for a size of one.
     kinds: Vec<Entries>,
-    /// What errors of a shape at both channels of an FRF make together, for a size of one each: of residues' real parts, and of their imaginary parts.
+    /// What errors of a shape at both channels of an FRF make together, for a size of one each: of residues'
+    /// real parts, and of their imaginary parts.
     both: [Entries; 2],
 }
 
@@ -153,7 +160,8 @@ fn put(entries: &mut Entries, n: usize, (i, j): (usize, usize), value: f64) {
     }
 }
 
-/// Errors of the terms below and above the band, the first of them at `first` among `n` features: as shapes' errors make them, and relative to their sizes.
+/// Errors of the terms below and above the band, the first of them at `first` among `n` features: as shapes'
+/// errors make them, and relative to their sizes.
 fn add_residual_terms(kinds: &mut [Entries], recorded: &RecordedModes, (n, first): (usize, usize)) {
     let frfs = recorded.frfs();
     for (e, shared) in recorded.low.iter().enumerate() {
@@ -267,7 +275,8 @@ impl SharedFeatures {
         }
     }
 
-    /// The same where nobody knows how the structure's damping is distributed: whether as these `shapes` of the paired modes have it, or so that it turns no phases.
+    /// The same where nobody knows how the structure's damping is distributed: whether as these `shapes` of
+    /// the paired modes have it, or so that it turns no phases.
     pub fn with_damping_distributed_otherwise(
         mut self,
         recorded: &RecordedModes,
@@ -293,8 +302,8 @@ impl SharedFeatures {
         self
     }
 
-    /// The same with errors of the damping that change the modes' damping ratios alone, and no phases: for a fit that sets out from where damping may be far more or
-    /// less than where it ends.
+    /// The same with errors of the damping that change the modes' damping ratios alone, and no phases: for a
+    /// fit that sets out from where damping may be far more or less than where it ends.
     pub fn with_ratios_alone(mut self) -> Self {
         let (n, ratios) = (self.count(), self.first_residue);
         self.kinds[DAMPING].retain(|(place, _)| place % (n + 1) == 0 && place / n < ratios);
@@ -303,7 +312,8 @@ impl SharedFeatures {
         self
     }
 
-    /// Whether errors of the damping, of the size `damping`, and another distribution of it make as much of the quadrature of the same modes here as there, but for less than noise does.
+    /// Whether errors of the damping, of the size `damping`, and another distribution of it make as much of
+    /// the quadrature of the same modes here as there, but for less than noise does.
     pub fn damps_like(&self, other: &SharedFeatures, damping: f64) -> bool {
         let (n, first) = (self.count(), self.first_residue);
         let noise = |k: usize| self.noise[(first + 2 * k + 1) * (n + 1)].sqrt();
@@ -315,8 +325,9 @@ impl SharedFeatures {
             && !(0..self.turned.len()).any(otherwise)
     }
 
-    /// Recorded features less those of the model: ln ω and ln ζ of the paired modes, their residues FRF by FRF, then all residual terms. Residues and
-    /// residual terms are in units of the recording's root mean squares.
+    /// Recorded features less those of the model: ln ω and ln ζ of the paired modes, their residues FRF by
+    /// FRF, then all residual terms. Residues and residual terms are in units of the recording's root mean
+    /// squares.
     pub fn residual(
         &self,
         recorded: &RecordedModes,
@@ -347,8 +358,9 @@ impl SharedFeatures {
         self.places.len()
     }
 
-    /// S = noise + Σ size²·kind, the covariance of the features of a model whose error has these sizes: row-major, its lower triangle, which is all that a Cholesky
-    /// factor reads. What stands above the diagonal means nothing.
+    /// S = noise + Σ size²·kind, the covariance of the features of a model whose error has these sizes:
+    /// row-major, its lower triangle, which is all that a Cholesky factor reads. What stands above the
+    /// diagonal means nothing.
     pub fn covariance(&self, sizes: &ErrorSizes) -> Vec<f64> {
         let mut sum = self.noise.to_vec();
         self.add_errors(sizes, &mut sum);
@@ -371,8 +383,9 @@ impl SharedFeatures {
     }
 }
 
-/// What errors of the modes' damping make of `n` features, for a size of one, entries that are not zero by their place: the damping that turns a shape's phases, which puts so much of each
-/// residue in quadrature, is as wrong as that which makes the mode die away.
+/// What errors of the modes' damping make of `n` features, for a size of one, entries that are not zero by
+/// their place: the damping that turns a shape's phases, which puts so much of each residue in quadrature, is
+/// as wrong as that which makes the mode die away.
 fn of_damping(n: usize, frfs: usize, turned: &[f64]) -> Entries {
     let matched = turned.len().checked_div(frfs).unwrap_or(0);
     let mut all = Entries::new();

@@ -1,7 +1,8 @@
 //! How probable the recorded features are under a model, its error's sizes at their most probable.
 //!
-//! The parameters of a linear model are integrated out, S + J·Jᵀ; the sizes τ, whose priors are half-normal with scales s, are maximised over:
-//! ln Z = max over τ of [ln N(d; 0, S(τ) + J·Jᵀ) − ½ Σ (τ/s)²]. A size that is stated is taken as it is.
+//! The parameters of a linear model are integrated out, S + J·Jᵀ; the sizes τ, whose priors are half-normal
+//! with scales s, are maximised over: ln Z = max over τ of [ln N(d; 0, S(τ) + J·Jᵀ) − ½ Σ (τ/s)²]. A size
+//! that is stated is taken as it is.
 
 use crate::density::Density;
 use crate::errors::{ErrorSizes, KINDS, SharedFeatures, SizePrior};
@@ -11,8 +12,8 @@ use crate::settings::evidence::{
     SIZES_OF_MEAN,
 };
 
-/// A model linearised about its parameters: recorded features less those of the model at the parameters' prior means, and how the model's
-/// features move with each parameter, in prior standard deviations.
+/// A model linearised about its parameters: recorded features less those of the model at the parameters'
+/// prior means, and how the model's features move with each parameter, in prior standard deviations.
 #[derive(Debug, Clone)]
 pub struct Linear {
     /// Recorded less modelled, at the prior means.
@@ -42,7 +43,8 @@ impl Linear {
         Density::of(&self.difference, &self.slopes, comparison)
     }
 
-    /// What [`Linear::evidence`] maximises over the sizes, at these: ln of the density and of the sizes' prior, without its normalisation.
+    /// What [`Linear::evidence`] maximises over the sizes, at these: ln of the density and of the sizes'
+    /// prior, without its normalisation.
     pub fn ln_evidence_at(
         &self,
         comparison: &SharedFeatures,
@@ -53,8 +55,8 @@ impl Linear {
         Some(self.ln_density(comparison, sizes)? + ln_prior(&sizes.to_array(), &scales.to_array(), &stated))
     }
 
-    /// Root mean squares of each size over its posterior, the others at their most probable: with few modes a size may well be larger than the
-    /// most probable one, and intervals must know it.
+    /// Root mean squares of each size over its posterior, the others at their most probable: with few modes a
+    /// size may well be larger than the most probable one, and intervals must know it.
     pub fn mean_sizes(
         &self,
         comparison: &SharedFeatures,
@@ -84,8 +86,9 @@ impl Linear {
         ErrorSizes::from_array(std::array::from_fn(&mut mean))
     }
 
-    /// The interval that holds a size of this kind, by its place in [`ErrorSizes`], with a probability of 95 %, the others at their most probable. It starts at zero where the
-    /// most probable size is next to nothing.
+    /// The interval that holds a size of this kind, by its place in [`ErrorSizes`], with a probability of
+    /// 95 %, the others at their most probable. It starts at zero where the most probable size is next to
+    /// nothing.
     pub fn size_interval(
         &self,
         comparison: &SharedFeatures,
@@ -131,7 +134,8 @@ impl Linear {
         }
     }
 
-    /// The evidence at the most probable sizes, whose priors have the scales `prior`; searched from `start`, or over five decades of each. What is stated stays.
+    /// The evidence at the most probable sizes, whose priors have the scales `prior`; searched from `start`,
+    /// or over five decades of each. What is stated stays.
     pub fn evidence(
         &self,
         comparison: &SharedFeatures,

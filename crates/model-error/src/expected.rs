@@ -1,4 +1,5 @@
-//! What a model lets one expect of a recording: modes that it may hold besides those it shows, and modes too low to be told from a mass line.
+//! What a model lets one expect of a recording: modes that it may hold besides those it shows, and modes too
+//! low to be told from a mass line.
 
 use crate::basis::Pole;
 use crate::matching::Pairing;
@@ -32,9 +33,10 @@ impl RecordedModes {
         }
     }
 
-    /// Beside the fixture by itself. Its modes that are too low to be told from a mass line are a part of that, with the errors of their shapes, and
-    /// count for all hypotheses: one with a mode just below the band must not gain by it. Where its modes out of the band need as many residual
-    /// terms as the recording's free fit took, that many are no sign of anything else.
+    /// Beside the fixture by itself. Its modes that are too low to be told from a mass line are a part of
+    /// that, with the errors of their shapes, and count for all hypotheses: one with a mode just below the
+    /// band must not gain by it. Where its modes out of the band need as many residual terms as the
+    /// recording's free fit took, that many are no sign of anything else.
     pub fn beside(mut self, fixture: &Fixture) -> Self {
         let Some(modelled) = ModelledModes::of(fixture, &self) else { return self };
         self.excess_residual_terms &= !modelled.needs_last_term();
@@ -42,7 +44,8 @@ impl RecordedModes {
         self
     }
 
-    /// Covariance of mass lines by the errors of the shapes of a fixture's low modes; `None` where it has no such modes, or they have no shapes.
+    /// Covariance of mass lines by the errors of the shapes of a fixture's low modes; `None` where it has no
+    /// such modes, or they have no shapes.
     fn shared_by_low_modes(&self, fixture: &Fixture, modes: &[ModelledMode]) -> Option<Vec<f64>> {
         let is_low = |mode: &&ModelledMode| mode.pole.omega <= TAU * self.resolved_from;
         let low: Vec<Complex64> = modes.iter().filter(is_low).map(|mode| mode.pole.lambda()).collect();

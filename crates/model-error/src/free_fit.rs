@@ -1,11 +1,13 @@
-//! The free fit of a recording: poles by Gauss–Newton steps, residues and residual terms eliminated (variable projection, Golub & Pereyra, *SIAM J. Numer.
-//! Anal.* 10 (1973) 413), and the covariance of all of them.
+//! The free fit of a recording: poles by Gauss–Newton steps, residues and residual terms eliminated (variable
+//! projection, Golub & Pereyra, *SIAM J. Numer. Anal.* 10 (1973) 413), and the covariance of all of them.
 //!
-//! At given poles each FRF is linear in its coefficients c, which a [`Projection`] gives. A pole parameter p moves the fit by the part of c·∂b/∂p that lies across the
-//! columns (Kaufman's approximation), and c by the part along them.
+//! At given poles each FRF is linear in its coefficients c, which a [`Projection`] gives. A pole parameter p
+//! moves the fit by the part of c·∂b/∂p that lies across the columns (Kaufman's approximation), and c by the
+//! part along them.
 //!
-//! The steps are not those of `descend` in `inference`: value, step and covariance come out of one and the same projection of each FRF, every step is undamped and held
-//! to a few per cent of a frequency, and a fit ends where its step is small beside the deviations of its poles, as these and not χ² are what is wanted.
+//! The steps are not those of `descend` in `inference`: value, step and covariance come out of one and the
+//! same projection of each FRF, every step is undamped and held to a few per cent of a frequency, and a fit
+//! ends where its step is small beside the deviations of its poles, as these and not χ² are what is wanted.
 
 use crate::basis::{MASS_LINE, Pole, TERMS, UPPER, row};
 use crate::outline::Outline;
@@ -37,8 +39,9 @@ pub(crate) struct FreeFit {
     misfit: Vec<f64>,
 }
 
-/// The columns whose coefficients make up mass line and upper residual. Modes too low to be told from a mass line, a suspension's, are a part of it: what they and
-/// the residual term by itself are no recording tells apart, what they are together it tells well.
+/// The columns whose coefficients make up mass line and upper residual. Modes too low to be told from a mass
+/// line, a suspension's, are a part of it: what they and the residual term by itself are no recording tells
+/// apart, what they are together it tells well.
 fn residual_columns(poles: &[Pole], resolved_from: f64) -> [Vec<usize>; 2] {
     let low = (0..poles.len()).filter(|&p| poles[p].omega <= TAU * resolved_from);
     [low.chain([poles.len() + MASS_LINE]).collect(), vec![poles.len() + UPPER]]
@@ -58,8 +61,8 @@ impl FreeFit {
         self.chi2_per_dof(recording) > POOR
     }
 
-    /// Whether the residual terms that `more` has are worth their number by Akaike's criterion. What too few of them leave biases the poles
-    /// long before χ² as a whole looks poor.
+    /// Whether the residual terms that `more` has are worth their number by Akaike's criterion. What too few
+    /// of them leave biases the poles long before χ² as a whole looks poor.
     pub(crate) fn lacks(&self, more: &FreeFit, recording: WeightedFrfs) -> bool {
         let coefficients = 2.0 * ((more.terms - self.terms) * self.fits.len()) as f64;
         self.chi2 - more.chi2 > 2.0 * coefficients * more.chi2_per_dof(recording).max(1.0)
@@ -76,8 +79,9 @@ impl FreeFit {
         more.filter(|more| more.chi2 < LEFT_BY_OUTER_POLE * self.chi2).unwrap_or(self)
     }
 
-    /// With a pole that a model has, in the band or below it, where that is worth its number of unknowns by Akaike's criterion: what it takes from χ² as a whole may
-    /// be little, and without it mass lines are off by ten of their deviations.
+    /// With a pole that a model has, in the band or below it, where that is worth its number of unknowns by
+    /// Akaike's criterion: what it takes from χ² as a whole may be little, and without it mass lines are off
+    /// by ten of their deviations.
     pub(crate) fn with_expected(self, recording: WeightedFrfs, pole: Pole) -> Self {
         let (inside, outside) = self.poles.split_at(self.inside);
         let (mut inside, mut outside) = (inside.to_vec(), outside.to_vec());
@@ -87,8 +91,9 @@ impl FreeFit {
         more.filter(|more| self.is_worse(more, recording)).unwrap_or(self)
     }
 
-    /// With a pole more in the band, where the fit misses most: two modes close to each other, seen on few lines, pass for one. It is kept where little is left with it of what was missed, and if
-    /// the lines resolve it: a tone on one line is no mode.
+    /// With a pole more in the band, where the fit misses most: two modes close to each other, seen on few
+    /// lines, pass for one. It is kept where little is left with it of what was missed, and if the lines
+    /// resolve it: a tone on one line is no mode.
     pub(crate) fn with_missed(self, recording: WeightedFrfs) -> Self {
         if !self.is_poor(recording) {
             return self;
@@ -280,7 +285,8 @@ impl FreeFit {
         })
     }
 
-    /// Covariance of the features: each FRF's own at given poles, and what the poles' covariance makes of all of them.
+    /// Covariance of the features: each FRF's own at given poles, and what the poles' covariance makes of all
+    /// of them.
     fn covariance(
         &self,
         modes: &[RecordedMode],
@@ -291,7 +297,8 @@ impl FreeFit {
         let count = 2 * m + 2 * m * frfs + 2 * frfs;
         let order = 2 * all;
         let of_poles = Cholesky::of(order, &self.information)?.inverse();
-        // Each feature as (FRF, coefficients of which it is the sum, imaginary part or not, scale); poles stand for themselves.
+        // Each feature as (FRF, coefficients of which it is the sum, imaginary part or not, scale); poles
+        // stand for themselves.
         let residue = |r: usize, frf: usize, im: bool| (frf, vec![r], im, modes[r].scale);
         let mut parts = Vec::new();
         for r in 0..m {
@@ -380,7 +387,8 @@ mod tests {
         assert_eq!(found.with_expected(recording, pole(110.0)).inside, 2);
     }
 
-    /// An FRF set of eight pairs: modes with these poles, residues of either sign, and a `tone` on one line of all of them, with noise of a ten-thousandth of the largest value.
+    /// An FRF set of eight pairs: modes with these poles, residues of either sign, and a `tone` on one line
+    /// of all of them, with noise of a ten-thousandth of the largest value.
     fn eight(poles: &[Pole], tone: Option<usize>) -> (FrfSet, Vec<f64>) {
         let lines = SpectralLines::even(2.5, 2.5, 120).unwrap();
         let pairs: Vec<FrfPair> = (0..8).map(|o| FrfPair::transverse(&format!("{o}"), "a")).collect();

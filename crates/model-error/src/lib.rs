@@ -1,23 +1,31 @@
 //! A model's own error as a part of the likelihood: recordings and models compared by their modes.
 //!
-//! No model of a real structure is exact. Its natural frequencies are off by tenths of a per cent, its damping ratios and residues by some per cent, where a recording's
-//! noise moves them by far less. Compared line by line, such a model is refuted whatever else is right about it; compared by modes, each kind of error
-//! has a size (Kennedy & O'Hagan, *J. R. Stat. Soc. B* 63 (2001) 425: model discrepancy as a part of the likelihood), and hypotheses are weighed by the error that they leave.
+//! No model of a real structure is exact. Its natural frequencies are off by tenths of a per cent, its
+//! damping ratios and residues by some per cent, where a recording's noise moves them by far less. Compared
+//! line by line, such a model is refuted whatever else is right about it; compared by modes, each kind of
+//! error has a size (Kennedy & O'Hagan, *J. R. Stat. Soc. B* 63 (2001) 425: model discrepancy as a part of
+//! the likelihood), and hypotheses are weighed by the error that they leave.
 //!
 //! 1. **Recording.** [`RecordedModes::of`] fits all FRFs freely with common poles,
-//!    H(s) = Σ s²A/(s² + 2ζωs + ω²) + residual terms, and gives the *features*: ln ω and ln ζ of each mode, its residue A in each FRF, each FRF's mass line and
-//!    upper residual. Their covariance is the Cramér–Rao bound times χ² per degree of freedom where that is above one. Modes too low to be told from a mass line are a part of it;
-//!    where there are any, lines begin above them, and mass lines have the errors of their shapes ([`RecordedModes::beside`]).
-//! 2. **Model.** [`ModelledModes::of`] finds a fixture's poles by the peaks of its FRFs and the modes of the recording, follows them by analytic continuation of the FRFs as they would be
-//!    recorded, and takes residues by contour integrals; [`ModelledModes::near`] sets out from poles that are known. [`modes_within`] counts the modes in a band.
-//! 3. **Pairing.** [`Pairing::of`] tells which mode of the model is which of the recording, by frequency and shape, and what modes without a partner cost.
-//! 4. **Error.** [`ErrorSizes`] are relative standard deviations by kind: natural frequency, damping ratio, shape (in phase and in quadrature), mass line, upper residual.
-//!    [`SharedFeatures`] makes the covariance S = noise + Σ size²·kind of them, with the model's [`Shapes`].
-//! 5. **Evidence.** [`Linear::evidence`] gives the evidence of a model that is linear in its parameters, with the sizes at their most probable ([`ModelEvidence`]);
-//!    [`Linear::mean_sizes`] their root mean squares.
+//!    H(s) = Σ s²A/(s² + 2ζωs + ω²) + residual terms, and gives the *features*: ln ω and ln ζ of each mode,
+//!    its residue A in each FRF, each FRF's mass line and upper residual. Their covariance is the Cramér–Rao
+//!    bound times χ² per degree of freedom where that is above one. Modes too low to be told from a mass line
+//!    are a part of it; where there are any, lines begin above them, and mass lines have the errors of their
+//!    shapes ([`RecordedModes::beside`]).
+//! 2. **Model.** [`ModelledModes::of`] finds a fixture's poles by the peaks of its FRFs and the modes of the
+//!    recording, follows them by analytic continuation of the FRFs as they would be recorded, and takes
+//!    residues by contour integrals; [`ModelledModes::near`] sets out from poles that are known.
+//!    [`modes_within`] counts the modes in a band.
+//! 3. **Pairing.** [`Pairing::of`] tells which mode of the model is which of the recording, by frequency and
+//!    shape, and what modes without a partner cost.
+//! 4. **Error.** [`ErrorSizes`] are relative standard deviations by kind: natural frequency, damping ratio,
+//!    shape (in phase and in quadrature), mass line, upper residual. [`SharedFeatures`] makes the covariance
+//!    S = noise + Σ size²·kind of them, with the model's [`Shapes`].
+//! 5. **Evidence.** [`Linear::evidence`] gives the evidence of a model that is linear in its parameters, with
+//!    the sizes at their most probable ([`ModelEvidence`]); [`Linear::mean_sizes`] their root mean squares.
 //!
-//! Where a model is exact, features differ from the recording's by the stated deviations: over 100 recordings with noise the mean square of the normalised differences is 1 within
-//! a tenth (`tests/all/calibration.rs`).
+//! Where a model is exact, features differ from the recording's by the stated deviations: over 100 recordings
+//! with noise the mean square of the normalised differences is 1 within a tenth (`tests/all/calibration.rs`).
 //!
 //! ```
 //! use jointscope_fixture::Fixture;

@@ -1,5 +1,6 @@
-//! Which mode of a model is which of a recording: the assignment of least cost that keeps the order of both, by dynamic programming, with a cost for modes left
-//! alone. Frequencies cost by their distance, shapes by their modal assurance criterion (MAC).
+//! Which mode of a model is which of a recording: the assignment of least cost that keeps the order of both,
+//! by dynamic programming, with a cost for modes left alone. Frequencies cost by their distance, shapes by
+//! their modal assurance criterion (MAC).
 
 use crate::modelled::ModelledModes;
 use crate::poles::ModelledMode;
@@ -62,7 +63,8 @@ impl Pairing {
                 pairs.push((i - 1, j - 1));
                 (i, j) = (i - 1, j - 1);
             } else if i > 0 && best[i][j] == best[i - 1][j] + WITHOUT_PARTNER {
-                // Too low to be compared in its residues, a mode that stands where it stands is there all the same.
+                // Too low to be compared in its residues, a mode that stands where it stands is there all the
+                // same.
                 let is_there = a[i - 1].resolved || recorded.deviations(i - 1)[0] < PLACED_FREQUENCY;
                 unmodelled += if is_there { of_anything(recorded, &a[i - 1]) } else { 0.0 };
                 i -= 1;
@@ -76,8 +78,8 @@ impl Pairing {
         Pairing { pairs, unmodelled, unseen }
     }
 
-    /// This pairing with a mode that has no partner in the place of the next one that has, above or below: where a model is far off, its mode may be taken for another's
-    /// neighbour, and no fit leads from there.
+    /// This pairing with a mode that has no partner in the place of the next one that has, above or below:
+    /// where a model is far off, its mode may be taken for another's neighbour, and no fit leads from there.
     pub fn others(&self, recorded: &RecordedModes, modelled: &ModelledModes) -> Vec<Self> {
         let unseen = |m: usize| visible(recorded, &modelled.modes[m]).min(MOST_UNSEEN);
         // The pairs on either side of a mode that has none of its own.
@@ -103,8 +105,8 @@ impl Pairing {
         of_recorded.chain(of_modelled.map(|(at, m)| swapped(at, (self.pairs[at].0, m)))).collect()
     }
 
-    /// What modes without a partner add to the logarithm of the evidence, nats: recorded ones as modes of anything, those of the model by half the χ² that the
-    /// recording would show of them, 60 nats at most.
+    /// What modes without a partner add to the logarithm of the evidence, nats: recorded ones as modes of
+    /// anything, those of the model by half the χ² that the recording would show of them, 60 nats at most.
     pub fn alone(&self) -> f64 {
         self.unmodelled + self.unseen
     }
@@ -116,8 +118,8 @@ fn alone(recorded: &RecordedModes, mode: &ModelledMode) -> f64 {
     if hz < recorded.resolved_from || hz > recorded.band.1 { 0.0 } else { WITHOUT_PARTNER }
 }
 
-/// Log-density of a mode's features where it may be a mode of anything: any frequency in the band, any damping ratio of some decades, residues
-/// of its own size.
+/// Log-density of a mode's features where it may be a mode of anything: any frequency in the band, any
+/// damping ratio of some decades, residues of its own size.
 fn of_anything(recorded: &RecordedModes, mode: &RecordedMode) -> f64 {
     let frequency = (recorded.band.1 / recorded.band.0).ln().ln();
     let damping = (DAMPING_DECADES * 10f64.ln()).ln();
@@ -133,7 +135,8 @@ fn visible(recorded: &RecordedModes, mode: &ModelledMode) -> f64 {
         return 0.0;
     }
     let spacing = (high - low) / (recorded.outline.recorded as f64 - 1.0).max(1.0);
-    // Near the resonance |s²/(s² + 2ζωs + ω²)|² ≈ (ω²/4)/((ω' − ω)² + ζ²ω²), whose integral over frequency is πf/(4ζ): over the spacing, the sum over lines.
+    // Near the resonance |s²/(s² + 2ζωs + ω²)|² ≈ (ω²/4)/((ω' − ω)² + ζ²ω²), whose integral over frequency is
+    // πf/(4ζ): over the spacing, the sum over lines.
     let lines = PI * hz / (4.0 * mode.pole.damping_ratio.max(1e-9)) / spacing;
     let sizes = mode.residues.iter().zip(&recorded.outline.weights);
     0.5 * sizes.map(|(a, weight)| a.norm_sqr() * weight * lines).sum::<f64>()

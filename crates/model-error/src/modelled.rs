@@ -1,4 +1,5 @@
-//! The modes of a model as a recording would have them: poles with their residues, and residual terms by projection on the recording's own.
+//! The modes of a model as a recording would have them: poles with their residues, and residual terms by
+//! projection on the recording's own.
 
 use crate::basis::{Pole, UPPER};
 use crate::poles::{ModelledMode, mode, mode_beside, poles};
@@ -8,7 +9,8 @@ use jointscope_lumped::{ContinuedFrfs, Instrument, ModelledTest, Vicinity};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// What a mode of a model counts as beside a recording. A mode that is followed keeps it: where it crosses an end of the band on the way, its features go on smoothly.
+/// What a mode of a model counts as beside a recording. A mode that is followed keeps it: where it crosses an
+/// end of the band on the way, its features go on smoothly.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Part {
     /// Beyond the band's ends: what it adds is of the residual terms, as the recording's fit would have it.
@@ -39,15 +41,17 @@ pub struct ModelledModes {
     parts: Vec<Part>,
     /// Real parts of mass line and upper residual of each FRF.
     pub(crate) residual_terms: Vec<[f64; 2]>,
-    /// What a free fit with the recording's poles adds to the residue of each of them, FRF by FRF, as the residual terms cannot write all that
-    /// the modes out of the band do.
+    /// What a free fit with the recording's poles adds to the residue of each of them, FRF by FRF, as the
+    /// residual terms cannot write all that the modes out of the band do.
     pub(crate) leaks: Vec<Vec<Complex64>>,
-    /// By how much the last residual term lowers χ² of what the modes leave, over all FRFs and lines of the recording.
+    /// By how much the last residual term lowers χ² of what the modes leave, over all FRFs and lines of the
+    /// recording.
     last_term: f64,
 }
 
 impl RecordedModes {
-    /// What models of fixtures about this one are made from in [`ModelledModes::after_step`]; `None` where models of their own cost as little.
+    /// What models of fixtures about this one are made from in [`ModelledModes::after_step`]; `None` where
+    /// models of their own cost as little.
     pub fn about(&self, fixture: Fixture) -> Option<Vicinity> {
         Vicinity::where_it_pays(fixture, self.band.1)
     }
@@ -59,24 +63,27 @@ impl RecordedModes {
 }
 
 impl ModelledModes {
-    /// The modes of a fixture in and near the band of a recording: from half its lowest line to 1.6 times its highest. `None` where a pole cannot be
-    /// followed or the model has no finite FRFs.
+    /// The modes of a fixture in and near the band of a recording: from half its lowest line to 1.6 times its
+    /// highest. `None` where a pole cannot be followed or the model has no finite FRFs.
     ///
-    /// A mode that makes no peak in any FRF between the recording's channels is found only where the recording has one nearby.
+    /// A mode that makes no peak in any FRF between the recording's channels is found only where the
+    /// recording has one nearby.
     pub fn of(fixture: &Fixture, recorded: &RecordedModes) -> Option<Self> {
         let test = recorded.modelled(fixture)?;
         let modes = follow(&test, recorded, &poles(&test, fixture, recorded), mode)?;
         ModelledModes::made_of(modes, None, &test, recorded)
     }
 
-    /// The modes of a fixture near those of another one, as which they count; `None` where a pole cannot be followed or the model has no finite FRFs.
+    /// The modes of a fixture near those of another one, as which they count; `None` where a pole cannot be
+    /// followed or the model has no finite FRFs.
     pub fn near(fixture: &Fixture, recorded: &RecordedModes, other: &ModelledModes) -> Option<Self> {
         let test = recorded.modelled(fixture)?;
         let modes = follow(&test, recorded, &other.poles(), mode)?;
         ModelledModes::made_of(modes, Some(&other.parts), &test, recorded)
     }
 
-    /// As [`ModelledModes::near`] of a fixture that differs from the one of `other`, and of `about` where there is one, by a step of a difference alone: for derivatives.
+    /// As [`ModelledModes::near`] of a fixture that differs from the one of `other`, and of `about` where
+    /// there is one, by a step of a difference alone: for derivatives.
     pub fn after_step(
         fixture: &Fixture,
         recorded: &RecordedModes,
@@ -130,7 +137,8 @@ impl ModelledModes {
         Some(ModelledModes { modes, parts, residual_terms, leaks, last_term })
     }
 
-    /// Whether a free fit of the model's own FRFs would take the last of the recording's residual terms, by Akaike's criterion: modes out of the band ask for it.
+    /// Whether a free fit of the model's own FRFs would take the last of the recording's residual terms, by
+    /// Akaike's criterion: modes out of the band ask for it.
     pub(crate) fn needs_last_term(&self) -> bool {
         self.last_term > 4.0 * self.residual_terms.len() as f64
     }
@@ -145,7 +153,8 @@ impl ModelledModes {
         self.modes.iter().zip(&self.parts).any(|(mode, part)| Part::of(recorded, &mode.pole) != *part)
     }
 
-    /// The same with all natural frequencies higher by this share, to set out from where exactly at a pole FRFs have no value.
+    /// The same with all natural frequencies higher by this share, to set out from where exactly at a pole
+    /// FRFs have no value.
     pub fn beside(mut self, share: f64) -> Self {
         self.modes.iter_mut().for_each(|mode| mode.pole.omega *= 1.0 + share);
         self

@@ -1,4 +1,5 @@
-//! The most probable sizes of a model's error, one after the other: a bracket on a logarithmic scale and a parabola through it, until none of them gains any more.
+//! The most probable sizes of a model's error, one after the other: a bracket on a logarithmic scale and a
+//! parabola through it, until none of them gains any more.
 
 use crate::density::Density;
 use crate::errors::{ErrorSizes, GAIN, KINDS, SizePrior};
@@ -102,8 +103,8 @@ struct Point {
     ln: f64,
 }
 
-/// Three points with the highest between the others, by steps twice as long each time in the direction in which the second of two points is higher, down to `least`; `None` where that is the
-/// highest of all.
+/// Three points with the highest between the others, by steps twice as long each time in the direction in
+/// which the second of two points is higher, down to `least`; `None` where that is the highest of all.
 fn onward(
     [mut before, mut here]: [Point; 2],
     least: f64,
@@ -129,7 +130,8 @@ fn vertex([a, b, c]: [Point; 3]) -> Option<f64> {
     (curvature < 0.0).then(|| 0.5 * (a.at + b.at - of_a / curvature)).filter(|at| at.is_finite())
 }
 
-/// ln of the sizes' prior but for its normalisation: half-normal, and half-Cauchy for gains, of which a test may have any.
+/// ln of the sizes' prior but for its normalisation: half-normal, and half-Cauchy for gains, of which a test
+/// may have any.
 pub(crate) fn ln_prior(sizes: &[f64; KINDS], scales: &[f64; KINDS], stated: &[bool; KINDS]) -> f64 {
     let of = |kind: usize| {
         let squared = (sizes[kind] / scales[kind]).powi(2);

@@ -1,4 +1,5 @@
-//! From a recording to its modes: where the free fits of poles, residues and residual terms to all FRFs start, and which of them is taken.
+//! From a recording to its modes: where the free fits of poles, residues and residual terms to all FRFs
+//! start, and which of them is taken.
 
 use crate::basis::{Pole, TERMS};
 use crate::expected::Expected;
@@ -13,8 +14,8 @@ use jointscope_modes::{ModalAnalysis, ModesOptions};
 use jointscope_spectra::FrfSet;
 use std::f64::consts::TAU;
 
-/// The free fit that is begun with poles in and out of the band, with what else the recording asks for: modes just outside the band, then more residual terms, then modes
-/// in the band that were missed.
+/// The free fit that is begun with poles in and out of the band, with what else the recording asks for: modes
+/// just outside the band, then more residual terms, then modes in the band that were missed.
 fn free_fit(recording: WeightedFrfs, inside: Vec<Pole>, outside: &[Pole]) -> Option<FreeFit> {
     let mut fit = FreeFit::converged(recording, inside, outside, TERMS.0)?;
     let lines = recording.frfs.lines().hz();
@@ -34,8 +35,9 @@ fn free_fit(recording: WeightedFrfs, inside: Vec<Pole>, outside: &[Pole]) -> Opt
     Some(fit.with_missed(recording))
 }
 
-/// A free fit with poles that a model expects besides, one after the other. Where that leaves more than noise, the model's modes by themselves are another place to begin
-/// from: what the recording showed by itself, on few lines or with next to no noise, may be none of its modes.
+/// A free fit with poles that a model expects besides, one after the other. Where that leaves more than
+/// noise, the model's modes by themselves are another place to begin from: what the recording showed by
+/// itself, on few lines or with next to no noise, may be none of its modes.
 fn with_expected(recording: WeightedFrfs, fit: FreeFit, besides: &[Pole], all: &[Pole]) -> FreeFit {
     let fit = besides.iter().fold(fit, |fit, pole| fit.with_expected(recording, *pole));
     if !fit.is_poor(recording) {
@@ -54,8 +56,9 @@ struct Above {
 }
 
 impl Above {
-    /// The lines above modes too low to be told from a mass line, as far as the others stay told from one; `None` where there are no such modes, and where lines are so
-    /// uneven that more than the lowest few would have to go.
+    /// The lines above modes too low to be told from a mass line, as far as the others stay told from one;
+    /// `None` where there are no such modes, and where lines are so uneven that more than the lowest few
+    /// would have to go.
     fn of(recording: WeightedFrfs, poles: &[Pole]) -> Option<Self> {
         let hz = recording.frfs.lines().hz();
         let (from, reach) = (resolved_from(hz), resolved_from(hz) - hz[0]);
@@ -84,10 +87,11 @@ impl Above {
 impl RecordedModes {
     /// The modes of a recording; `None` where it has none that can be told.
     ///
-    /// Poles that a model `expected` besides what they show by themselves are tried too: two modes on a few lines look like one. So are the model's alone, where more than
-    /// noise is left. Where there are modes too low to be
-    /// told from a mass line, the band begins above them: where they are on a few lines many poles fit as well, and mass lines differ with them by many deviations. A mode that the
-    /// model has not, told as sharply as others, is kept.
+    /// Poles that a model `expected` besides what they show by themselves are tried too: two modes on a few
+    /// lines look like one. So are the model's alone, where more than noise is left. Where there are modes
+    /// too low to be told from a mass line, the band begins above them: where they are on a few lines many
+    /// poles fit as well, and mass lines differ with them by many deviations. A mode that the model has not,
+    /// told as sharply as others, is kept.
     pub fn of(
         recording: WeightedFrfs,
         options: &ModesOptions,
@@ -128,9 +132,11 @@ impl RecordedModes {
         Some(modes)
     }
 
-    /// Frequency, Hz, below a mode of this recording that lies near the lowest line and yet is told from a mass line, where a model `expects` none near it: the spring that nobody
-    /// stated shows in nothing else. `None` where there is no such mode. A peak much narrower than the spacing of the lines tells its frequency alone: that it is so narrow is told
-    /// as well then, which is more than a mass line could be taken for.
+    /// Frequency, Hz, below a mode of this recording that lies near the lowest line and yet is told from a
+    /// mass line, where a model `expects` none near it: the spring that nobody stated shows in nothing else.
+    /// `None` where there is no such mode. A peak much narrower than the spacing of the lines tells its
+    /// frequency alone: that it is so narrow is told as well then, which is more than a mass line could be
+    /// taken for.
     fn clear_of_the_lower_end(&self, expected: &[Pole]) -> Option<f64> {
         let spacing = (self.resolved_from - self.lowest) / RESOLVED_LINES;
         let is_expected =
@@ -149,7 +155,8 @@ impl RecordedModes {
         Some(0.5 * (self.lowest + self.modes[lowest].pole.omega / TAU))
     }
 
-    /// The same modes as each FRF of the `recording` has them by itself, the free fit begun at the common poles; `None` for an FRF whose fit fails.
+    /// The same modes as each FRF of the `recording` has them by itself, the free fit begun at the common
+    /// poles; `None` for an FRF whose fit fails.
     ///
     /// Where a structure stays the same they differ by their noise.
     pub fn one_by_one(&self, recording: WeightedFrfs) -> Vec<Option<RecordedModes>> {

@@ -1,5 +1,5 @@
-//! A few lines of a recording's band and what its residual terms are on them: enough to write by residual terms what a model's modes in the band leave,
-//! at a fraction of the cost of all lines.
+//! A few lines of a recording's band and what its residual terms are on them: enough to write by residual
+//! terms what a model's modes in the band leave, at a fraction of the cost of all lines.
 
 use crate::basis::{Pole, row};
 use crate::projection::Projection;
@@ -32,7 +32,8 @@ pub(crate) struct Outline {
 }
 
 impl Outline {
-    /// Of a recording that was fitted with `poles`, the first `inside` of them in the band, and so many residual terms.
+    /// Of a recording that was fitted with `poles`, the first `inside` of them in the band, and so many
+    /// residual terms.
     pub(crate) fn of(
         recording: WeightedFrfs,
         (poles, inside): (&[Pole], usize),

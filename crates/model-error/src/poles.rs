@@ -1,6 +1,7 @@
 //! The poles of a model by the secant method from nearby, and residues by a contour about each.
 //!
-//! The FRFs are analytic functions of the complex frequency, effects and measuring chain included, so nothing here knows what an effect does.
+//! The FRFs are analytic functions of the complex frequency, effects and measuring chain included, so nothing
+//! here knows what an effect does.
 
 use crate::basis::Pole;
 use crate::outline::grid;
@@ -25,7 +26,8 @@ pub struct ModelledMode {
     pub residues: Vec<Complex64>,
 }
 
-/// Number of modes that a fixture has within the lines of FRFs, as far as they make peaks; `None` where it cannot be modelled.
+/// Number of modes that a fixture has within the lines of FRFs, as far as they make peaks; `None` where it
+/// cannot be modelled.
 ///
 /// A mode that is weak in all FRFs and close to a stronger one makes none and is not counted.
 pub fn modes_within(fixture: &Fixture, frfs: &FrfSet) -> Option<usize> {
@@ -36,8 +38,9 @@ pub fn modes_within(fixture: &Fixture, frfs: &FrfSet) -> Option<usize> {
     Some(found.iter().filter(|pole| (TAU * low..=TAU * high).contains(&pole.norm())).count())
 }
 
-/// The poles in and near the band of a recording (from half its lowest line to 1.6 times its highest), rad/s, ascending: from the peaks of the FRFs
-/// over a grid of frequencies, close by where effects resonate by themselves, and from the recording's own modes.
+/// The poles in and near the band of a recording (from half its lowest line to 1.6 times its highest), rad/s,
+/// ascending: from the peaks of the FRFs over a grid of frequencies, close by where effects resonate by
+/// themselves, and from the recording's own modes.
 pub(crate) fn poles(test: &ModelledTest, fixture: &Fixture, recorded: &RecordedModes) -> Vec<Complex64> {
     let mut all = peaking(test, &recorded.outline.grid, recorded.frfs());
     let (low, high) = (FARTHEST_BELOW * recorded.lowest, FARTHEST_ABOVE * recorded.band.1);
@@ -45,7 +48,8 @@ pub(crate) fn poles(test: &ModelledTest, fixture: &Fixture, recorded: &RecordedM
     for about in fixture.effects().filter_map(about_own_resonance).filter(near) {
         peaking(test, &about, recorded.frfs()).into_iter().for_each(|pole| add(&mut all, pole));
     }
-    // A narrow mode that is weak in all FRFs may lie between two frequencies of the grid: then a recorded one shows where to look.
+    // A narrow mode that is weak in all FRFs may lie between two frequencies of the grid: then a recorded one
+    // shows where to look.
     let mut frfs = test.continued();
     for guess in recorded.modes.iter().map(|mode| mode.pole.lambda()) {
         if all.iter().all(|pole| (pole - guess).norm() > HINTED_AT * guess.norm())
@@ -59,8 +63,8 @@ pub(crate) fn poles(test: &ModelledTest, fixture: &Fixture, recorded: &RecordedM
     all
 }
 
-/// Frequencies about the one at which an effect resonates by itself, half a resonance's width from one to the next: a light resonator's peak falls between two of
-/// any other grid.
+/// Frequencies about the one at which an effect resonates by itself, half a resonance's width from one to the
+/// next: a light resonator's peak falls between two of any other grid.
 fn about_own_resonance(effect: &Effect) -> Option<SpectralLines> {
     let parameters = effect.kind.spec().parameters;
     let value = |name: &str| Some(effect.value(parameters.iter().position(|p| p.name == name)?));
@@ -87,7 +91,8 @@ fn peaking(test: &ModelledTest, grid: &SpectralLines, count: usize) -> Vec<Compl
     for k in (1..hz.len() - 1).filter(|&k| peaks(k)) {
         let guess = Complex64::new(0.0, TAU * hz[k]);
         let step = Complex64::new(0.0, PEAK_STEP * TAU * (hz[k + 1] - hz[k]));
-        // From the peak a mode that is weak in all FRFs leads to a stronger one; from where a single pole would make it, to itself.
+        // From the peak a mode that is weak in all FRFs leads to a stronger one; from where a single pole
+        // would make it, to itself.
         let about = [k - 1, k, k + 1].map(|k| (Complex64::new(0.0, TAU * hz[k]), k));
         let single = single_pole(about, values.chunks_exact(hz.len()));
         let near =
@@ -103,8 +108,9 @@ fn peaking(test: &ModelledTest, grid: &SpectralLines, count: usize) -> Vec<Compl
     all
 }
 
-/// The pole p of c + r/(s − p), c and r of each FRF its own, through the values at three points (s, index): from two of the differences the constant is gone, and
-/// from their quotient the residue. FRFs that change most count most.
+/// The pole p of c + r/(s − p), c and r of each FRF its own, through the values at three points (s, index):
+/// from two of the differences the constant is gone, and from their quotient the residue. FRFs that change
+/// most count most.
 fn single_pole<'a>(
     [(s1, k1), (s2, k2), (s3, k3)]: [(Complex64, usize); 3],
     frfs: impl Iterator<Item = &'a [Complex64]>,
@@ -141,7 +147,8 @@ fn apart(guess: Complex64) -> Complex64 {
 /// Growth, as a share of the pole, that rounding makes of no damping at all.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether a mode at this pole dies away, or at least does not grow beyond rounding: a suspension may have no damping at all.
+/// Whether a mode at this pole dies away, or at least does not grow beyond rounding: a suspension may have no
+/// damping at all.
 fn is_damped(pole: Complex64) -> bool {
     pole.im > 0.0 && pole.re <= ROUNDING * pole.norm()
 }
@@ -199,7 +206,8 @@ pub(crate) fn mode(frfs: &mut ContinuedFrfs, guess: Complex64, count: usize) -> 
     mode_about(frfs, (near, count), &mut values)
 }
 
-/// The same where the pole is so near that a contour about `guess` holds it: for steps of a difference. Two contours take less than half of what the secant method does.
+/// The same where the pole is so near that a contour about `guess` holds it: for steps of a difference. Two
+/// contours take less than half of what the secant method does.
 pub(crate) fn mode_beside(frfs: &mut ContinuedFrfs, guess: Complex64, count: usize) -> Option<ModelledMode> {
     let mut values = Vec::new();
     let wide = WIDE_CONTOUR * radius(guess);
@@ -218,7 +226,8 @@ fn mode_about(
     values: &mut Vec<Complex64>,
 ) -> Option<ModelledMode> {
     let contour = Contour::about(frfs, (near, radius(near)), count, values)?;
-    // The secant method's last steps come and go with rounding, and what a pole is off by is left of its resonance on lines. The contour tells it to every digit.
+    // The secant method's last steps come and go with rounding, and what a pole is off by is left of its
+    // resonance on lines. The contour tells it to every digit.
     let off = contour.off();
     let at = if off.norm() <= radius(near) { near + off } else { near };
     // Of s²A/((s − λ)(s − λ̄)) the residue at λ is λ²A/(λ − λ̄).
@@ -263,7 +272,8 @@ impl Contour {
         Some(Contour { residues, moments })
     }
 
-    /// The pole's place from the centre: of r/(s − λ) the first moment over the residue, to the fourth power of that distance as a share of the radius.
+    /// The pole's place from the centre: of r/(s − λ) the first moment over the residue, to the fourth power
+    /// of that distance as a share of the radius.
     fn off(&self) -> Complex64 {
         let size: f64 = self.residues.iter().map(Complex64::norm_sqr).sum();
         self.residues.iter().zip(&self.moments).map(|(r, m)| r.conj() * m).sum::<Complex64>() / size
@@ -278,7 +288,8 @@ mod tests {
 
     #[test]
     fn a_mode_is_the_same_to_nine_digits_from_wherever_it_is_looked_for() {
-        // A heavy strip between blocks on soft springs: what features of a fit are compared by must not jump as a guess moves.
+        // A heavy strip between blocks on soft springs: what features of a fit are compared by must not jump
+        // as a guess moves.
         let fixture = Fixture::from_json(
             r#"{ "bodies": { "A": { "mass": 0.75, "inertia": 3.2e-4, "x_cg": -0.03 }, "B": { "mass": 0.75, "inertia": 3.2e-4, "x_cg": 0.07 } },
                  "points": { "1": { "body": "A", "x": -0.055 }, "2": { "body": "A", "x": 0 }, "3": { "body": "B", "x": 0.04 }, "4": { "body": "B", "x": 0.095 } },

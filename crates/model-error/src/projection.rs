@@ -1,4 +1,5 @@
-//! Complex linear least squares with weights: the columns made orthonormal once (Gram–Schmidt, twice for accuracy), then projections.
+//! Complex linear least squares with weights: the columns made orthonormal once (Gram–Schmidt, twice for
+//! accuracy), then projections.
 
 use num_complex::Complex64;
 
@@ -66,7 +67,8 @@ impl Projection {
             .collect()
     }
 
-    /// The coefficients of the combination nearest to `values`, and by how much the last column lowers what the others leave of Σ w|values|².
+    /// The coefficients of the combination nearest to `values`, and by how much the last column lowers what
+    /// the others leave of Σ w|values|².
     pub(crate) fn with_last(&self, values: &[Complex64]) -> (Vec<Complex64>, f64) {
         let components = self.components(values).1;
         let lowered = components.last().map_or(0.0, |along| along.norm_sqr());
@@ -82,7 +84,8 @@ impl Projection {
         (self.coefficients_of(&components), left)
     }
 
-    /// (BᴴWB)⁻¹, row-major: its real part is the covariance of the coefficients' real parts where the weights are 1/variance of one part.
+    /// (BᴴWB)⁻¹, row-major: its real part is the covariance of the coefficients' real parts where the weights
+    /// are 1/variance of one part.
     pub(crate) fn covariance(&self) -> Vec<Complex64> {
         let n = self.columns;
         let mut all = vec![Complex64::ZERO; n * n];

@@ -10,7 +10,8 @@ use num_complex::Complex64;
 pub struct RecordedMode {
     /// Natural frequency and damping ratio.
     pub pole: Pole,
-    /// Residue in each FRF, 1/kg for transverse channels: φ_response·φ_reference of mass-normalised shapes, where damping is light.
+    /// Residue in each FRF, 1/kg for transverse channels: φ_response·φ_reference of mass-normalised shapes,
+    /// where damping is light.
     pub residues: Vec<Complex64>,
     /// Root mean square of the residues over the FRFs.
     pub scale: f64,
@@ -38,7 +39,8 @@ pub struct RecordedModes {
     pub(crate) residual_terms: Vec<[f64; 2]>,
     /// Root mean squares of those over the FRFs.
     pub(crate) residual_scales: [f64; 2],
-    /// Covariance of mass lines, 1/kg², where the shapes of modes that are a part of them err at each channel by their root mean square; empty where there are none.
+    /// Covariance of mass lines, 1/kg², where the shapes of modes that are a part of them err at each channel
+    /// by their root mean square; empty where there are none.
     pub(crate) low: Vec<f64>,
     /// Covariance of the [features](RecordedModes::features), row-major.
     pub(crate) covariance: Vec<f64>,
@@ -56,7 +58,8 @@ impl RecordedModes {
         [first, first + 1].map(|at| self.covariance[at * (n + 1)].max(0.0).sqrt())
     }
 
-    /// Whether the free fit took all the residual terms it may, and the model beside it needs fewer: then something smooth that is no mode is in the FRFs.
+    /// Whether the free fit took all the residual terms it may, and the model beside it needs fewer: then
+    /// something smooth that is no mode is in the FRFs.
     pub fn has_excess_residual_terms(&self) -> bool {
         self.excess_residual_terms
     }
@@ -66,7 +69,8 @@ impl RecordedModes {
         self.pairs.len()
     }
 
-    /// Number of features: ln ω and ln ζ of each mode, real and imaginary residue of each FRF in each mode, and two residual terms of each FRF.
+    /// Number of features: ln ω and ln ζ of each mode, real and imaginary residue of each FRF in each mode,
+    /// and two residual terms of each FRF.
     pub fn count(&self) -> usize {
         let (modes, frfs) = (self.modes.len(), self.frfs());
         2 * modes + 2 * modes * frfs + 2 * frfs

@@ -8,7 +8,8 @@ use jointscope_spectra::FrfSet;
 pub struct WeightedFrfs<'a> {
     /// Accelerances with their variances, on lines above 0 Hz.
     pub frfs: &'a FrfSet,
-    /// 1/variance of the real part, and of the imaginary part, of each value, FRF after FRF: 2/E|ε|². Zero where a value does not count.
+    /// 1/variance of the real part, and of the imaginary part, of each value, FRF after FRF: 2/E|ε|². Zero
+    /// where a value does not count.
     pub weights: &'a [f64],
 }
 

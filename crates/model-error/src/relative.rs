@@ -5,8 +5,9 @@ use crate::modelled::ModelledModes;
 use crate::recorded::RecordedModes;
 
 impl RecordedModes {
-    /// These modes as a model that is calibrated on a `baseline` should have them: what the baseline's modes differ by from those of the model
-    /// (`modelled`, paired by `pairing`) is taken off, and its covariance added. Modes that the baseline does not show are left out.
+    /// These modes as a model that is calibrated on a `baseline` should have them: what the baseline's modes
+    /// differ by from those of the model (`modelled`, paired by `pairing`) is taken off, and its covariance
+    /// added. Modes that the baseline does not show are left out.
     ///
     /// `None` where the FRFs are not the same.
     pub fn relative_to(

@@ -1,7 +1,9 @@
-//! Mass-normalised shapes of a model's modes at the channels of a recording, from the residues of driving-point FRFs (φ²) and the signs of transfer FRFs.
+//! Mass-normalised shapes of a model's modes at the channels of a recording, from the residues of
+//! driving-point FRFs (φ²) and the signs of transfer FRFs.
 //!
-//! A pole of the measuring chain, as a sensor's mounting makes one, is none of the structure's: it has residues but no shape. Amplitudes whose products are of the
-//! size of these stand for one, so that what errs in them by a share errs in the residues by that share.
+//! A pole of the measuring chain, as a sensor's mounting makes one, is none of the structure's: it has
+//! residues but no shape. Amplitudes whose products are of the size of these stand for one, so that what errs
+//! in them by a share errs in the residues by that share.
 
 use crate::poles::mode;
 use crate::recorded::RecordedModes;
@@ -18,7 +20,8 @@ pub struct Shapes {
     pub(crate) frfs: Vec<(usize, usize)>,
     /// By mode, mass-normalised amplitude at each channel.
     pub(crate) amplitudes: Vec<Vec<f64>>,
-    /// By mode, what damping that is not distributed as mass and stiffness are adds to the residue of each FRF: its imaginary part, the measuring chain apart.
+    /// By mode, what damping that is not distributed as mass and stiffness are adds to the residue of each
+    /// FRF: its imaginary part, the measuring chain apart.
     pub(crate) quadrature: Vec<Vec<f64>>,
 }
 
@@ -85,8 +88,8 @@ impl Shapes {
         shape.iter().map(|a| a * a).sum::<f64>() / shape.len() as f64
     }
 
-    /// Covariance of the residues of FRFs `a` and `b` where a mode's shape errs at each channel by its root mean square: an error ε_c at channel c changes the residue
-    /// φ_o·φ_i by ε_o·φ_i + ε_i·φ_o.
+    /// Covariance of the residues of FRFs `a` and `b` where a mode's shape errs at each channel by its root
+    /// mean square: an error ε_c at channel c changes the residue φ_o·φ_i by ε_o·φ_i + ε_i·φ_o.
     pub(crate) fn shared(&self, mode: usize, a: usize, b: usize) -> f64 {
         let by_channel = |frf: usize, channel: usize| {
             let (o, i) = self.frfs[frf];

@@ -1,9 +1,12 @@
 //! What errors of a structure's model could explain in a recording, however large they are.
 //!
-//! A free fit explains filters, delays and sensors that load what they measure by residual terms of any phase. A structure has no such terms at low frequencies: below its modes it moves as
-//! rigid bodies do, in phase or in opposite phase with the force. So mass lines, and what modes below the band add, are real here. Modes in the band have any frequency, damping and
-//! complex residue, and what modes above the band add has any phase, for these are damped. Where dashpots hold the structure these add what falls with frequency a quarter of a turn away
-//! from the mass line; a high-pass does the same to one channel, and is not told from them there.
+//! A free fit explains filters, delays and sensors that load what they measure by residual terms of any
+//! phase. A structure has no such terms at low frequencies: below its modes it moves as rigid bodies do, in
+//! phase or in opposite phase with the force. So mass lines, and what modes below the band add, are real
+//! here. Modes in the band have any frequency, damping and complex residue, and what modes above the band add
+//! has any phase, for these are damped. Where dashpots hold the structure these add what falls with frequency
+//! a quarter of a turn away from the mass line; a high-pass does the same to one channel, and is not told
+//! from them there.
 
 use crate::basis::{Pole, power_of_term, row};
 use crate::recorded::RecordedModes;
@@ -61,8 +64,8 @@ impl Basis<'_> {
 }
 
 impl RecordedModes {
-    /// What errors of a structure's model, however large, leave of the `recording` that these modes are from, to first order about the poles of its free fit; of a structure that is
-    /// `held_by_dashpots` or not.
+    /// What errors of a structure's model, however large, leave of the `recording` that these modes are from,
+    /// to first order about the poles of its free fit; of a structure that is `held_by_dashpots` or not.
     pub fn structural(&self, recording: WeightedFrfs, held_by_dashpots: bool) -> Option<Structural> {
         let hz = recording.frfs.lines().hz();
         let first = hz.partition_point(|hz| *hz < self.band.0);
@@ -74,7 +77,8 @@ impl RecordedModes {
             self.modes.iter().map(|mode| mode.pole).chain(outside.iter().copied()).collect();
         let rows: Vec<Vec<Complex64>> =
             omegas.iter().map(|omega| row(&poles, *terms, *omega, highest).collect()).collect();
-        // Whether what a column adds is in phase with the force, or of any phase, or nothing that a structure has.
+        // Whether what a column adds is in phase with the force, or of any phase, or nothing that a structure
+        // has.
         let phases: Vec<&[Complex64]> = (0..poles.len() + terms)
             .map(|index| -> &[Complex64] {
                 match index.checked_sub(poles.len()).map(power_of_term) {

@@ -1,4 +1,5 @@
-//! A modal analysis: orders fitted one after the other, stable poles selected, all refined by maximum likelihood.
+//! A modal analysis: orders fitted one after the other, stable poles selected, all refined by maximum
+//! likelihood.
 
 use jointscope_frf::KnownNoise;
 use jointscope_frf::noise::NoiseSource;
@@ -39,7 +40,8 @@ pub struct ModesOptions {
 /// Residual terms of one FRF: what modes below and above the band leave in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResidualTerms {
-    /// Of the receptance over s⁻², s⁻⁴, …: the rigid motions and modes below the band, 1/kg, 1/(kg·s²), … for transverse channels.
+    /// Of the receptance over s⁻², s⁻⁴, …: the rigid motions and modes below the band, 1/kg, 1/(kg·s²), … for
+    /// transverse channels.
     pub lower: Vec<Complex64>,
     /// Of the receptance over 1, s², …: the modes above the band, m/N, m·s²/N, ….
     pub upper: Vec<Complex64>,
@@ -71,7 +73,8 @@ pub struct ModalAnalysis {
     pub merged_from: Option<usize>,
     /// The FRFs used, as accelerances with their variances.
     measured: FrfSet,
-    /// How many recorded lines each line stands for, and FRF after FRF each line's part of the squares that merging took out.
+    /// How many recorded lines each line stands for, and FRF after FRF each line's part of the squares that
+    /// merging took out.
     stands_for: Vec<f64>,
     taken_out: Vec<f64>,
     /// The same rebuilt from the modes.
@@ -79,8 +82,8 @@ pub struct ModalAnalysis {
 }
 
 impl ModalAnalysis {
-    /// Finds the modes of a set of FRFs. Variances that the set carries are believed; without, they come from coherence and averages, or
-    /// from the scatter of the lines.
+    /// Finds the modes of a set of FRFs. Variances that the set carries are believed; without, they come from
+    /// coherence and averages, or from the scatter of the lines.
     ///
     /// # Errors
     /// See [`ModesError`].
@@ -180,7 +183,8 @@ impl ModalAnalysis {
         self.chi2_per_dof <= POOR_FIT
     }
 
-    /// MAC of every two modes over the FRFs' residues, row-major: 1 on the diagonal, small elsewhere where the channels tell the shapes apart.
+    /// MAC of every two modes over the FRFs' residues, row-major: 1 on the diagonal, small elsewhere where
+    /// the channels tell the shapes apart.
     pub fn auto_mac(&self) -> Vec<f64> {
         let n = self.modes.len();
         (0..n * n).map(|k| crate::mac(&self.modes[k / n].residues, &self.modes[k % n].residues)).collect()
@@ -272,7 +276,8 @@ fn start(
         .map_err(|(picked, nearest)| ModesError::NothingThere { picked, nearest })
 }
 
-/// Selection by worth (not of poles picked by hand) and the most likely poles, with as many residual terms as pay.
+/// Selection by worth (not of poles picked by hand) and the most likely poles, with as many residual terms as
+/// pay.
 fn refine(observed: &Observed, start: Poles, by_hand: bool) -> Result<Likelihood, ModesError> {
     let undetermined = ModesError::Undetermined { modes: start.poles.len(), lines: observed.lines() };
     let search = |poles: Poles, terms: Terms| {
@@ -302,8 +307,8 @@ fn refine(observed: &Observed, start: Poles, by_hand: bool) -> Result<Likelihood
     Ok(best)
 }
 
-/// The set with the noise that the modes leave in it, for FRFs of which nothing else tells the noise, and the most likely poles for that; with the old ones
-/// where nothing changes.
+/// The set with the noise that the modes leave in it, for FRFs of which nothing else tells the noise, and the
+/// most likely poles for that; with the old ones where nothing changes.
 fn with_residual_noise(
     observed: Observed,
     condensed: Observed,
@@ -338,7 +343,8 @@ fn rebuild(observed: &Observed, fit: &Likelihood, condensed: &Observed) -> Vec<C
     all
 }
 
-/// Residual terms of the receptance from those of the accelerance at its highest line: (ω/ω_h)²ᵏ = (−1)ᵏ s²ᵏ/ω_h²ᵏ.
+/// Residual terms of the receptance from those of the accelerance at its highest line: (ω/ω_h)²ᵏ = (−1)ᵏ
+/// s²ᵏ/ω_h²ᵏ.
 fn residual_terms(fit: &Likelihood, condensed: &Observed) -> Vec<ResidualTerms> {
     let highest = condensed.omegas[condensed.lines() - 1];
     let of = |terms: &Vec<Complex64>| {

@@ -1,14 +1,17 @@
-//! Inner products, FRF by FRF, of everything that the modal model and its derivatives are linear combinations of.
+//! Inner products, FRF by FRF, of everything that the modal model and its derivatives are linear combinations
+//! of.
 //!
-//! The accelerance of an FRF is s²·Σ_r [ρ_r/(s − λ_r) + ρ̄_r/(s − λ̄_r)] and the residual terms. Residues, derivatives with respect to poles and derivatives
-//! with respect to participations all combine the same columns, so one pass over the lines for a set of poles gives the best residues, χ², its gradient and
-//! its curvature.
+//! The accelerance of an FRF is s²·Σ_r [ρ_r/(s − λ_r) + ρ̄_r/(s − λ̄_r)] and the residual terms. Residues,
+//! derivatives with respect to poles and derivatives with respect to participations all combine the same
+//! columns, so one pass over the lines for a set of poles gives the best residues, χ², its gradient and its
+//! curvature.
 
 use num_complex::Complex64;
 
 use crate::observed::Observed;
 
-/// Residual terms in use, of the receptance: s⁻², s⁻⁴, … (rigid motions, modes below the band) and 1, s², … (modes above).
+/// Residual terms in use, of the receptance: s⁻², s⁻⁴, … (rigid motions, modes below the band) and 1, s², …
+/// (modes above).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Terms {
     pub lower: usize,
@@ -35,7 +38,8 @@ impl Terms {
     }
 }
 
-/// Weighted inner products Re Σ w c̄_a c_b, one matrix for each FRF, weights twice those of the complex values: one over the variance of a part.
+/// Weighted inner products Re Σ w c̄_a c_b, one matrix for each FRF, weights twice those of the complex
+/// values: one over the variance of a part.
 #[derive(Debug, Clone)]
 pub(crate) struct Gram {
     width: usize,

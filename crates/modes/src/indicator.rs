@@ -13,13 +13,14 @@ pub struct ModeIndicator {
     pub responses: Vec<Channel>,
     /// References of the matrix.
     pub references: Vec<Channel>,
-    /// The values at each line, in the FRFs' unit, the largest first: as many curves as the matrix has references or responses, whichever are fewer.
+    /// The values at each line, in the FRFs' unit, the largest first: as many curves as the matrix has
+    /// references or responses, whichever are fewer.
     pub curves: Vec<Vec<f64>>,
 }
 
 impl ModeIndicator {
-    /// Of the translations of a set, or of its rotations where it has no translation: units do not mix. Where FRFs of the matrix are missing, responses or
-    /// references are left out until none is.
+    /// Of the translations of a set, or of its rotations where it has no translation: units do not mix. Where
+    /// FRFs of the matrix are missing, responses or references are left out until none is.
     ///
     /// `None` of a set without such FRFs.
     pub fn of(frfs: &FrfSet) -> Option<Self> {
@@ -59,7 +60,8 @@ impl ModeIndicator {
     }
 }
 
-/// Responses and references between which every FRF is there: the channel that lacks the largest share of its own is left out until none lacks any.
+/// Responses and references between which every FRF is there: the channel that lacks the largest share of its
+/// own is left out until none lacks any.
 fn complete<'a>(pairs: &[&'a FrfPair]) -> (Vec<&'a Channel>, Vec<&'a Channel>) {
     let distinct = |channel: fn(&'a FrfPair) -> &'a Channel| {
         let mut all: Vec<&Channel> = Vec::new();

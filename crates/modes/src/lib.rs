@@ -1,19 +1,25 @@
-//! Modal parameters from FRFs: natural frequencies, damping ratios, mode shapes and residual terms, each with its standard deviation.
+//! Modal parameters from FRFs: natural frequencies, damping ratios, mode shapes and residual terms, each with
+//! its standard deviation.
 //!
 //! [`ModalAnalysis::of`] goes three steps:
 //!
-//! 1. **Poles by order.** The poly-reference least-squares complex-frequency estimator (pLSCF, known as PolyMAX) fits H(ω) = B(z)A(z)⁻¹, z = exp(iωT), for rising orders;
-//!    poles that stay from order to order make the columns of the [stabilisation chart](ChartPole).
-//! 2. **Selection.** Of the columns those are modes that χ² cannot do without, noise and look-elsewhere counted; or the ones that the analyst picks ([`ModesOptions::pick`]).
+//! 1. **Poles by order.** The poly-reference least-squares complex-frequency estimator (pLSCF, known as
+//!    PolyMAX) fits H(ω) = B(z)A(z)⁻¹, z = exp(iωT), for rising orders; poles that stay from order to order
+//!    make the columns of the [stabilisation chart](ChartPole).
+//! 2. **Selection.** Of the columns those are modes that χ² cannot do without, noise and look-elsewhere
+//!    counted; or the ones that the analyst picks ([`ModesOptions::pick`]).
 //! 3. **Maximum likelihood.** Poles, participations, residues and residual terms are refined on
-//!    α(s) = Σ [ρ/(s − λ) + ρ̄/(s − λ̄)] + L/s² + U with the FRFs' variances as weights, residues eliminated. The inverse of the information is the Cramér–Rao bound that the
-//!    standard deviations are taken from; estimates reach it (`tests/all/statistics.rs`, `docs/guide/modes.md`).
+//!    α(s) = Σ [ρ/(s − λ) + ρ̄/(s − λ̄)] + L/s² + U with the FRFs' variances as weights, residues eliminated.
+//!    The inverse of the information is the Cramér–Rao bound that the standard deviations are taken from;
+//!    estimates reach it (`tests/all/statistics.rs`, `docs/guide/modes.md`).
 //!
-//! Then each FRF is asked by itself. Where they do not agree on a pole, as after a structure has warmed up between hits, the mode [drifts](DriftingMode): frequency and damping ratio are means
-//! over the FRFs, and their deviation is the scatter of one more.
+//! Then each FRF is asked by itself. Where they do not agree on a pole, as after a structure has warmed up
+//! between hits, the mode [drifts](DriftingMode): frequency and damping ratio are means over the FRFs, and
+//! their deviation is the scatter of one more.
 //!
-//! Any form of FRF does, any number of responses and references, uneven lines and gaps. Variances are those of the set, or come from coherence and averages, or from the
-//! scatter of the lines and, in the end, from what the modes leave.
+//! Any form of FRF does, any number of responses and references, uneven lines and gaps. Variances are those
+//! of the set, or come from coherence and averages, or from the scatter of the lines and, in the end, from
+//! what the modes leave.
 //!
 //! ```
 //! use jointscope_modes::{ModalAnalysis, ModesOptions};
@@ -38,7 +44,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`ModeIndicator`] shows how many modes there are before any is looked for: the singular values of the matrix of FRFs, line by line. [`match_modes`] pairs measured modes with those of a model by frequency and shape ([`mac`]).
+//! [`ModeIndicator`] shows how many modes there are before any is looked for: the singular values of the
+//! matrix of FRFs, line by line. [`match_modes`] pairs measured modes with those of a model by frequency and
+//! shape ([`mac`]).
 
 mod analysis;
 mod error;

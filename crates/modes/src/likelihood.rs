@@ -1,8 +1,10 @@
-//! Maximum likelihood of the modal model: poles and participations by Gauss–Newton, residues and residual terms eliminated.
+//! Maximum likelihood of the modal model: poles and participations by Gauss–Newton, residues and residual
+//! terms eliminated.
 //!
-//! Noise is circular and Gaussian with known variances, so the likelihood is weighted least squares. For given poles and participations, everything else is linear,
-//! row of FRFs by row of FRFs; it is solved for and taken out of the normal equations (Schur complement). What remains is the Fisher information of
-//! poles and participations with all else unknown, and its inverse their Cramér–Rao bound.
+//! Noise is circular and Gaussian with known variances, so the likelihood is weighted least squares. For
+//! given poles and participations, everything else is linear, row of FRFs by row of FRFs; it is solved for
+//! and taken out of the normal equations (Schur complement). What remains is the Fisher information of poles
+//! and participations with all else unknown, and its inverse their Cramér–Rao bound.
 
 mod point;
 mod poles;
@@ -37,7 +39,8 @@ pub(crate) struct Likelihood {
     pub entry_std: Vec<Vec<f64>>,
 }
 
-/// The most likely poles and participations; everything linear is solved for anew at every point (variable projection).
+/// The most likely poles and participations; everything linear is solved for anew at every point (variable
+/// projection).
 struct Search<'a> {
     observed: &'a Observed,
     terms: Terms,
@@ -71,7 +74,8 @@ impl LeastSquares for Search<'_> {
 }
 
 impl Likelihood {
-    /// Searches from `start`; `None` where the equations have no solution, as with more unknowns than numbers.
+    /// Searches from `start`; `None` where the equations have no solution, as with more unknowns than
+    /// numbers.
     pub(crate) fn search(
         observed: &Observed,
         start: Poles,
@@ -92,7 +96,8 @@ impl Likelihood {
         descend(&Search { observed, terms, prior }, here, None, &settings)?.point.finish(observed)
     }
 
-    /// Variance of δω/σ and of δ ln σ, and their covariance, for each mode: the Cramér–Rao bound at the estimate.
+    /// Variance of δω/σ and of δ ln σ, and their covariance, for each mode: the Cramér–Rao bound at the
+    /// estimate.
     pub(crate) fn pole_covariance(&self) -> Vec<[[f64; 2]; 2]> {
         let inverse = self.information.inverse();
         let n = self.information.order();

@@ -5,7 +5,8 @@ use num_complex::Complex64;
 use crate::settings::matching::{LACKING, LEAST_MAC, MOST_SHIFT, SHIFT_WEIGHT};
 use crate::{Mode, mac};
 
-/// A mode that a model has: its frequency (Hz) and what it should leave in each FRF, the product of its shape at response and reference.
+/// A mode that a model has: its frequency (Hz) and what it should leave in each FRF, the product of its shape
+/// at response and reference.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExpectedMode {
     /// Natural frequency, Hz.

@@ -22,7 +22,8 @@ pub struct Mode {
     pub damping_ratio: f64,
     /// Its standard deviation.
     pub damping_std: f64,
-    /// The pole λ of the model that all FRFs share, rad/s. Where the mode drifts, frequency and damping ratio are those of the FRFs one by one.
+    /// The pole λ of the model that all FRFs share, rad/s. Where the mode drifts, frequency and damping ratio
+    /// are those of the FRFs one by one.
     pub pole: Complex64,
     /// Correlation of the errors of frequency and damping ratio.
     pub correlation: f64,
@@ -32,14 +33,15 @@ pub struct Mode {
     pub residues: Vec<Complex64>,
     /// Standard deviation of each residue's real and of its imaginary part.
     pub residue_std: Vec<f64>,
-    /// The shape over the responses; empty where the matrix of FRFs has gaps. Its largest entry is one, or that of responses and references together where a driving
-    /// point tells what one is against the other.
+    /// The shape over the responses; empty where the matrix of FRFs has gaps. Its largest entry is one, or
+    /// that of responses and references together where a driving point tells what one is against the other.
     pub responses: Vec<(Channel, Complex64)>,
     /// The shape over the references, by reciprocity the same one.
     pub references: Vec<(Channel, Complex64)>,
     /// Modal mass for this shape, kg; told by driving points only, of shapes that are nearly real.
     pub modal_mass: Option<f64>,
-    /// Modal phase collinearity: 1 where all residues are in phase or in opposition, as those of a proportionally damped structure are.
+    /// Modal phase collinearity: 1 where all residues are in phase or in opposition, as those of a
+    /// proportionally damped structure are.
     pub phase_collinearity: f64,
     /// Rise of χ² without the mode over the rise that it takes to be told from noise.
     pub worth: f64,
@@ -178,7 +180,8 @@ fn scale(shape: &mut Shape, by: Complex64) {
     }
 }
 
-/// m = φ_p²/(2i·ω_d·ρ_pp): what a driving point tells of the modal mass of a shape φ, the mean over them weighted by φ_p⁴.
+/// m = φ_p²/(2i·ω_d·ρ_pp): what a driving point tells of the modal mass of a shape φ, the mean over them
+/// weighted by φ_p⁴.
 fn modal_mass(residues: &[Complex64], pairs: &[FrfPair], pole: Complex64, responses: &Shape) -> Option<f64> {
     let (mut inverse, mut weight) = (0.0, 0.0);
     for (residue, pair) in residues.iter().zip(pairs).filter(|(_, pair)| pair.response == pair.reference) {

@@ -4,7 +4,8 @@ use num_complex::Complex64;
 
 use crate::likelihood::Likelihood;
 
-/// The accelerance of the FRF `frf`, which stands in `row` and `column`, at `omegas` (rad/s); residual terms are of size one at `highest`.
+/// The accelerance of the FRF `frf`, which stands in `row` and `column`, at `omegas` (rad/s); residual terms
+/// are of size one at `highest`.
 pub(crate) fn rebuilt(
     omegas: &[f64],
     fit: &Likelihood,

@@ -1,7 +1,8 @@
 //! Several poles at one place that are one pole which moved from FRF to FRF.
 //!
-//! Of many lines, poles that no FRF has by itself pay: two or three beside each other, mixed otherwise in each FRF, follow a resonance that is elsewhere in each. As
-//! [drift](crate::DriftingMode) it takes fewer unknowns.
+//! Of many lines, poles that no FRF has by itself pay: two or three beside each other, mixed otherwise in
+//! each FRF, follow a resonance that is elsewhere in each. As [drift](crate::DriftingMode) it takes fewer
+//! unknowns.
 
 use num_complex::Complex64;
 

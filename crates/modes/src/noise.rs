@@ -1,8 +1,10 @@
 //! Noise from what the modes leave of each FRF, where neither variances nor coherence tell it.
 //!
-//! The scatter of neighbouring lines says how noisy an FRF is between its resonances. On a sharp peak, of which a recording has a line or three, the neighbours say little, and these lines
-//! decide on the damping ratio. Once the modes are known, their residuals tell the noise better: a floor S that varies slowly, and a share N of |H|² (noise of the force, and of
-//! everything that moves with it) that is told by all resonances within a wide window together.
+//! The scatter of neighbouring lines says how noisy an FRF is between its resonances. On a sharp peak, of
+//! which a recording has a line or three, the neighbours say little, and these lines decide on the damping
+//! ratio. Once the modes are known, their residuals tell the noise better: a floor S that varies slowly, and
+//! a share N of |H|² (noise of the force, and of everything that moves with it) that is told by all
+//! resonances within a wide window together.
 
 use jointscope_spectra::median;
 use num_complex::Complex64;
@@ -16,8 +18,10 @@ use crate::settings::noise::{
     SHARE_WINDOW_PARTS, UNTOLD_SHARE,
 };
 
-/// Variances E|ε|² of the accelerances of `frfs` on all lines, merged ones as what they leave and not as their own scatter tells it, from what is left of them by modes at their own places for each FRF, so that resonances that moved between records
-/// are not taken for noise. FRFs that the modes cannot be fitted to are left out.
+/// Variances E|ε|² of the accelerances of `frfs` on all lines, merged ones as what they leave and not as
+/// their own scatter tells it, from what is left of them by modes at their own places for each FRF, so that
+/// resonances that moved between records are not taken for noise. FRFs that the modes cannot be fitted to are
+/// left out.
 pub(crate) fn variances(
     observed: &Observed,
     condensed: &Observed,
@@ -62,7 +66,8 @@ pub(crate) fn variances(
     fitted.into_iter().zip(floors_and_shares(&left).into_iter().map(of_lines)).collect()
 }
 
-/// What share of each line's own noise residues and poles follow, about: those of a peak of three lines go through them.
+/// What share of each line's own noise residues and poles follow, about: those of a peak of three lines go
+/// through them.
 fn followed(observed: &Observed, poles: &[Complex64], frf: usize) -> Vec<f64> {
     let weights = observed.weights(frf);
     let mut all = vec![0.0; observed.lines()];
@@ -100,7 +105,8 @@ fn floors_and_shares(left: &[Left]) -> Vec<Vec<f64>> {
         for ((fit, l), sums) in all.iter_mut().zip(left).zip(&sums) {
             let share = |i: usize| {
                 let [above, below] = [0, 1].map(|part| sums[part].over(window(i, half, n)) + pooled[i][part]);
-                // A standard deviation more than it seems: too little noise on a peak costs more than too much.
+                // A standard deviation more than it seems: too little noise on a peak costs more than too
+                // much.
                 let below = below.max(f64::MIN_POSITIVE);
                 (above / below).max(0.0) + below.sqrt().recip().min(UNTOLD_SHARE)
             };
@@ -123,7 +129,8 @@ struct Fit {
 }
 
 impl Fit {
-    /// An upper bound: all of it floor, and all of it share. The median of an exponential is ln 2 of its mean.
+    /// An upper bound: all of it floor, and all of it share. The median of an exponential is ln 2 of its
+    /// mean.
     fn begun(left: &Left) -> Self {
         let n = left.squares.len();
         let largest = left.size.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
@@ -172,7 +179,8 @@ impl Fit {
     }
 }
 
-/// The mean of exponential numbers, such as squares of a complex normal, by their median, which is ln 2 of it; zero of none.
+/// The mean of exponential numbers, such as squares of a complex normal, by their median, which is ln 2 of
+/// it; zero of none.
 fn mean_by_median(values: impl Iterator<Item = f64>) -> f64 {
     median(&mut values.collect::<Vec<f64>>()).map_or(0.0, |median| median / std::f64::consts::LN_2)
 }

@@ -1,4 +1,5 @@
-//! What was measured, as accelerances with weights, and how the FRFs stand in a matrix of responses and references.
+//! What was measured, as accelerances with weights, and how the FRFs stand in a matrix of responses and
+//! references.
 
 use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet};
 use num_complex::Complex64;
@@ -8,8 +9,9 @@ use crate::settings::merged_lines::{FEW_LINES, SMOOTH};
 
 /// The FRFs as rows of `columns` entries that share their poles' participations.
 ///
-/// The columns are the references or the responses, whichever are fewer: a hammer that roves over thirty points past one sensor is
-/// one column of thirty rows. A matrix with gaps is taken apart into FRFs that share poles only.
+/// The columns are the references or the responses, whichever are fewer: a hammer that roves over thirty
+/// points past one sensor is one column of thirty rows. A matrix with gaps is taken apart into FRFs that
+/// share poles only.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Grid {
     /// Indices of the FRFs, row after row.
@@ -72,7 +74,8 @@ pub(crate) struct Observed {
 }
 
 impl Observed {
-    /// The lines above 0 Hz of a set that carries variances, each of which stands for so many; `None` where there are none.
+    /// The lines above 0 Hz of a set that carries variances, each of which stands for so many; `None` where
+    /// there are none.
     pub(crate) fn of(frfs: &FrfSet, stands_for: &[f64]) -> Option<Self> {
         let hz = frfs.lines().hz();
         let lines: Vec<usize> = (0..hz.len()).filter(|&i| hz[i] > 0.0).collect();
@@ -146,8 +149,8 @@ impl Observed {
         }
     }
 
-    /// The same with neighbouring lines averaged where the FRFs are smooth: far from every one of the `poles`. A sum of weighted lines keeps
-    /// what they tell of everything that is straight over them.
+    /// The same with neighbouring lines averaged where the FRFs are smooth: far from every one of the
+    /// `poles`. A sum of weighted lines keeps what they tell of everything that is straight over them.
     pub(crate) fn condensed(&self, poles: &[Complex64]) -> Self {
         let n = self.lines();
         if n <= FEW_LINES {
@@ -167,7 +170,8 @@ impl Observed {
             }
         }
         starts.push(n);
-        // By the lines that each stands for and alike for all FRFs, so that a point's frequency is their mean.
+        // By the lines that each stands for and alike for all FRFs, so that a point's frequency is their
+        // mean.
         let many: Vec<f64> =
             starts.windows(2).map(|ends| self.stands_for[ends[0]..ends[1]].iter().sum()).collect();
         let count = many.len();

@@ -1,8 +1,10 @@
-//! Poly-reference least-squares complex-frequency estimator: H(ω) ≈ B(z) A(z)⁻¹ in matrix fractions of z = exp(iωT).
+//! Poly-reference least-squares complex-frequency estimator: H(ω) ≈ B(z) A(z)⁻¹ in matrix fractions of
+//! z = exp(iωT).
 //!
-//! For every row of FRFs the numerator is eliminated from the normal equations (Guillaume et al. 2003, Peeters et al. 2004). All of their blocks are
-//! Toeplitz in the powers of z, so the lines are gone through once for the highest order. The blocks of lower orders are leading blocks of those,
-//! and so are their Cholesky factors: the reduced equations of the next order follow from those before by one product of rows.
+//! For every row of FRFs the numerator is eliminated from the normal equations (Guillaume et al. 2003,
+//! Peeters et al. 2004). All of their blocks are Toeplitz in the powers of z, so the lines are gone through
+//! once for the highest order. The blocks of lower orders are leading blocks of those, and so are their
+//! Cholesky factors: the reduced equations of the next order follow from those before by one product of rows.
 
 use jointscope_linalg::{LuWorkspace, complex_eigenvalues};
 use num_complex::Complex64;
@@ -32,7 +34,8 @@ impl Circle {
         Complex64::from_polar(1.0, (omega - self.first) * self.period)
     }
 
-    /// Whether a frequency lies within the lines: beyond them what hardly grows writes what is out of the band, and is no mode.
+    /// Whether a frequency lies within the lines: beyond them what hardly grows writes what is out of the
+    /// band, and is no mode.
     fn holds(&self, omega: f64) -> bool {
         (0.0..=TAU * BAND_ARC).contains(&((omega - self.first) * self.period))
     }
@@ -52,7 +55,8 @@ pub(crate) struct OrderPoles {
     pub poles: Vec<(Complex64, Vec<Complex64>)>,
 }
 
-/// Poles that are damped, or hardly grow, of every order from `orders.0` to `orders.1`; orders whose equations are singular are left out.
+/// Poles that are damped, or hardly grow, of every order from `orders.0` to `orders.1`; orders whose
+/// equations are singular are left out.
 pub(crate) fn poles_by_order(observed: &Observed, orders: (usize, usize)) -> Vec<OrderPoles> {
     let mut equations = Equations::of(observed, orders.1);
     let mut all = Vec::new();
@@ -71,7 +75,8 @@ struct Equations {
     circle: Circle,
     columns: usize,
     size: usize,
-    /// Σ over the rows of FRFs of the blocks of the denominator, reduced by the numerators up to the order raised to.
+    /// Σ over the rows of FRFs of the blocks of the denominator, reduced by the numerators up to the order
+    /// raised to.
     reduced: Vec<Complex64>,
     /// L⁻¹S of each row of FRFs: (order + 1) rows of `size` entries.
     eliminated: Vec<Vec<Complex64>>,
@@ -179,7 +184,8 @@ impl Equations {
         }
     }
 
-    /// The damped poles of an order, with A₀ = I: poles that are mere arithmetic then come out undamped (Cauberghe et al. 2005).
+    /// The damped poles of an order, with A₀ = I: poles that are mere arithmetic then come out undamped
+    /// (Cauberghe et al. 2005).
     fn poles(&mut self, order: usize) -> Option<Vec<(Complex64, Vec<Complex64>)>> {
         let (p, size) = (self.columns, self.size);
         let unknowns = order * p;
@@ -274,7 +280,8 @@ fn add(to: &mut [Complex64], from: &[Complex64], factor: Complex64) {
     }
 }
 
-/// Overwrites the rows of `q` by L⁻¹q, with L the Cholesky factor of the Hermitian Toeplitz matrix that has `first` as first row.
+/// Overwrites the rows of `q` by L⁻¹q, with L the Cholesky factor of the Hermitian Toeplitz matrix that has
+/// `first` as first row.
 fn forward_substitute(first: &[Complex64], q: &mut [Complex64], width: usize) {
     let n = first.len();
     let mut lower = vec![Complex64::ZERO; n * n];

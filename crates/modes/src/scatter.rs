@@ -10,14 +10,16 @@ use crate::settings::drift::{
 };
 use crate::settings::each_frf::{FEWEST_FRFS, HELD, OWN_STEPS};
 
-/// A mode that is not at one place: its frequencies differ among the FRFs by more than their noise, as those of a structure that warms up between hits do.
+/// A mode that is not at one place: its frequencies differ among the FRFs by more than their noise, as those
+/// of a structure that warms up between hits do.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DriftingMode {
     /// Standard deviation of the frequency among the FRFs beyond noise, Hz.
     pub frequency: f64,
     /// Standard deviation of the damping ratio among the FRFs beyond noise.
     pub damping_ratio: f64,
-    /// FRFs in which the mode was told by itself: (index, frequency, its standard deviation, damping ratio, its standard deviation).
+    /// FRFs in which the mode was told by itself: (index, frequency, its standard deviation, damping ratio,
+    /// its standard deviation).
     pub by_frf: Vec<(usize, f64, f64, f64, f64)>,
 }
 
@@ -84,8 +86,9 @@ impl Sharing {
         self.degrees += single.degrees();
     }
 
-    /// Whether the FRFs are explained better by poles of their own than noise alone would have it. Where they are not, poles that one FRF cannot tell by itself, such as
-    /// those of a close pair, differ for no reason.
+    /// Whether the FRFs are explained better by poles of their own than noise alone would have it. Where they
+    /// are not, poles that one FRF cannot tell by itself, such as those of a close pair, differ for no
+    /// reason.
     fn is_paid_for(&self, observed: &Observed, shared: &Likelihood) -> bool {
         if self.degrees != observed.degrees() || self.unknowns <= shared.unknowns() {
             return false;
@@ -115,14 +118,16 @@ fn of_mode(by_frf: Vec<(usize, f64, f64, f64, f64)>, half_width: f64) -> Scatter
     }
 }
 
-/// Measurements of one thing that may have changed between them (random effects). Its variance is the one with which they scatter as much as they should (Paule and
-/// Mandel 1982): where it is large they count alike, the precise as those that noise leaves less sure.
+/// Measurements of one thing that may have changed between them (random effects). Its variance is the one
+/// with which they scatter as much as they should (Paule and Mandel 1982): where it is large they count
+/// alike, the precise as those that noise leaves less sure.
 struct Heterogeneity {
     mean: f64,
     mean_variance: f64,
     /// Variance of the thing itself.
     between: f64,
-    /// The same by weights of the measurements' own deviations (DerSimonian and Laird 1986): a few that noise leaves unsure, and says little of, do not make it large.
+    /// The same by weights of the measurements' own deviations (DerSimonian and Laird 1986): a few that noise
+    /// leaves unsure, and says little of, do not make it large.
     of_the_precise: f64,
     certain: bool,
 }
@@ -181,7 +186,8 @@ impl Heterogeneity {
     }
 }
 
-/// Standard deviations of |λ|/2π and ζ from the covariance of (δω/σ, δ ln σ), and the correlation with the second.
+/// Standard deviations of |λ|/2π and ζ from the covariance of (δω/σ, δ ln σ), and the correlation with the
+/// second.
 pub(crate) fn deviations(pole: Complex64, covariance: [[f64; 2]; 2]) -> [(f64, f64); 2] {
     let (sigma, omega, natural) = (-pole.re, pole.im, pole.norm());
     // d|λ| = (ω dω + σ dσ)/|λ|; dζ = (dσ − ζ d|λ|)/|λ|.

@@ -1,4 +1,5 @@
-//! Which poles of the chart are modes: those that stay from order to order and without which the FRFs are explained worse than noise allows.
+//! Which poles of the chart are modes: those that stay from order to order and without which the FRFs are
+//! explained worse than noise allows.
 
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -33,7 +34,8 @@ fn is_resonance(pole: &Complex64, observed: &Observed) -> bool {
     -pole.re < OVERDAMPED * pole.norm() && pole.im > first - margin && pole.im < last + margin
 }
 
-/// The most likely poles, without candidates that are not worth their unknowns; `None` where the equations cannot be solved.
+/// The most likely poles, without candidates that are not worth their unknowns; `None` where the equations
+/// cannot be solved.
 pub(crate) fn prune(
     observed: &Observed,
     candidates: Poles,
@@ -73,7 +75,8 @@ pub(crate) fn prune(
             }
             continue;
         }
-        // One of two poles at one place makes the other worthless: only the weakest goes, and its like far from it.
+        // One of two poles at one place makes the other worthless: only the weakest goes, and its like far
+        // from it.
         let mut order = weak;
         order.sort_by(|a, b| worth[*a].total_cmp(&worth[*b]));
         let mut gone: Vec<usize> = Vec::new();
@@ -131,7 +134,8 @@ pub(crate) fn is_inside(pole: &Complex64, observed: &Observed) -> bool {
     natural >= observed.omegas[0] && natural <= observed.omegas[observed.lines() - 1]
 }
 
-/// Poles of the chart nearest to frequencies picked, Hz; the frequency and the nearest pole's where there is none within reach.
+/// Poles of the chart nearest to frequencies picked, Hz; the frequency and the nearest pole's where there is
+/// none within reach.
 pub(crate) fn picked(tracks: &[Track], picks: &[f64], observed: &Observed) -> Result<Poles, (f64, f64)> {
     let mut poles = Poles { poles: Vec::new(), participations: Vec::new() };
     for &pick in picks {

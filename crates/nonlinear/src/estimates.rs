@@ -5,8 +5,8 @@ use crate::settings::judgement::VAGUE;
 use jointscope_findings::Estimate;
 use jointscope_fixture::{Effect, ParameterSpec};
 
-/// The parameters of an effect known to these standard deviations: of the logarithm of what is positive, of the value of a cubic stiffness. `inexact`
-/// is the share of every value that the method itself leaves open.
+/// The parameters of an effect known to these standard deviations: of the logarithm of what is positive, of
+/// the value of a cubic stiffness. `inexact` is the share of every value that the method itself leaves open.
 pub(crate) fn estimates(effect: &Effect, std: &[Option<f64>], inexact: f64) -> Vec<Estimate> {
     let positive = RestoringLaw::of(effect).is_none_or(|law| law.is_positive());
     let of = |(index, parameter): (usize, &ParameterSpec)| {

@@ -1,12 +1,14 @@
-//! Joints whose stiffness or damping depends on amplitude: their motion over time, and what hits of several strengths tell of them.
+//! Joints whose stiffness or damping depends on amplitude: their motion over time, and what hits of several
+//! strengths tell of them.
 //!
-//! * [`simulate`]: accelerations of a fixture under recorded forces, its cubic springs, friction and gaps included. The linear part
-//!   is propagated exactly; events of contact and slip are confined to short steps;
-//! * [`NonlinearDiagnosis`]: do FRFs change with the strength of the hits ([`Homogeneity`], no model needed)? If they do, every law at every
-//!   joint and degree of freedom is simulated under the recorded forces and fitted together with the fixture's tolerances, and judged on hits
-//!   that no fit saw;
-//! * [`SteppedDiagnosis`]: stepped-sine FRFs at several levels: frequency and damping of the resonance by level, the joint's equivalent stiffness and
-//!   loss against the amplitude of its motion by harmonic balance, which law follows them, and up to which level;
+//! * [`simulate`]: accelerations of a fixture under recorded forces, its cubic springs, friction and gaps
+//!   included. The linear part is propagated exactly; events of contact and slip are confined to short steps;
+//! * [`NonlinearDiagnosis`]: do FRFs change with the strength of the hits ([`Homogeneity`], no model needed)?
+//!   If they do, every law at every joint and degree of freedom is simulated under the recorded forces and
+//!   fitted together with the fixture's tolerances, and judged on hits that no fit saw;
+//! * [`SteppedDiagnosis`]: stepped-sine FRFs at several levels: frequency and damping of the resonance by
+//!   level, the joint's equivalent stiffness and loss against the amplitude of its motion by harmonic
+//!   balance, which law follows them, and up to which level;
 //! * [`pooled`]: one set of FRFs of levels that are alike, for analyses that know of no amplitude;
 //! * [`ForceStateMap`]: what a joint bore against how it was moved, from the measured motion of its bodies;
 //! * [`RestoringLaw`]: the laws themselves.

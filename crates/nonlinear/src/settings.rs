@@ -1,6 +1,8 @@
-//! Every tuned number of what the crate simulates and diagnoses, with the reason for it where there is one to state, by the step that it decides.
+//! Every tuned number of what the crate simulates and diagnoses, with the reason for it where there is one to
+//! state, by the step that it decides.
 //!
-//! Guards against rounding and steps of difference quotients of the fixture's quantities, which decide nothing, stand where they are used; so do sizes of arrays.
+//! Guards against rounding and steps of difference quotients of the fixture's quantities, which decide
+//! nothing, stand where they are used; so do sizes of arrays.
 
 /// Steps over time.
 pub(crate) mod simulation {
@@ -12,7 +14,8 @@ pub(crate) mod simulation {
     pub(crate) const HALVINGS: usize = 12;
     /// Error below which steps are not refined, relative to a response's rms.
     pub(crate) const ENOUGH: f64 = 1e-5;
-    /// Points for each sample of a signal that is shifted by a part of one: between two of them it is read from a straight line.
+    /// Points for each sample of a signal that is shifted by a part of one: between two of them it is read
+    /// from a straight line.
     pub(crate) const FINE_SAMPLES: usize = 64;
     /// Share of an element's largest participation below which a mode does not move it.
     pub(crate) const UNFELT_MODE: f64 = 1e-9;
@@ -26,7 +29,8 @@ pub(crate) mod map {
     pub(crate) const SAMPLED_SHARE: f64 = 0.45;
     /// Share of the lowest elastic frequency from which motion is taken from the sensors.
     pub(crate) const FROM_LOWEST: f64 = 0.5;
-    /// Share of the lowest frequency of that band at which the sensors begin to count, fully at the frequency itself.
+    /// Share of the lowest frequency of that band at which the sensors begin to count, fully at the frequency
+    /// itself.
     pub(crate) const RISES_FROM: f64 = 0.5;
     /// Share of the highest frequency from which what is shown falls, to nothing at the frequency itself.
     pub(crate) const FALLS_FROM: f64 = 0.8;
@@ -46,9 +50,11 @@ pub(crate) mod hits {
     pub(crate) const BLOW_BEGINS: f64 = 0.05;
     /// Samples before that from which on a record counts.
     pub(crate) const BEFORE_BLOW: usize = 8;
-    /// Noise of a signal over its rms, at the least: one without any (of a simulation) still is not known beyond its rounding.
+    /// Noise of a signal over its rms, at the least: one without any (of a simulation) still is not known
+    /// beyond its rounding.
     pub(crate) const LEAST_NOISE: f64 = 1e-6;
-    /// Part of a record at its end in which noise is looked for, a quarter: a hit's force is over, its response has mostly died away.
+    /// Part of a record at its end in which noise is looked for, a quarter: a hit's force is over, its
+    /// response has mostly died away.
     pub(crate) const TAIL_PARTS: usize = 4;
     /// Fewest samples of a tail.
     pub(crate) const FEWEST_IN_TAIL: usize = 32;
@@ -70,8 +76,9 @@ pub(crate) mod homogeneity {
     pub(crate) const CHANGED: f64 = 2e-3;
     /// e^{−aT} of the window over the record, as an exponent.
     pub(crate) const WINDOW: f64 = 10.0;
-    /// Error of every spectral value relative to itself, beside its noise: what sampling and the end of the record leave of a hit's exact instant. It is
-    /// alike on many lines, and no difference as small tells anything of a joint.
+    /// Error of every spectral value relative to itself, beside its noise: what sampling and the end of the
+    /// record leave of a hit's exact instant. It is alike on many lines, and no difference as small tells
+    /// anything of a joint.
     pub(crate) const SAMPLING_ERROR: f64 = 3e-3;
     /// Force lines below this share of the strongest are left out.
     pub(crate) const WEAK_FORCE: f64 = 0.03;
@@ -95,9 +102,11 @@ pub(crate) mod band {
 
 /// What a model leaves of a record.
 pub(crate) mod misfit {
-    /// Departure of every line that is not held against a model: what sampling, sensors and steps leave of it, relative to the line.
+    /// Departure of every line that is not held against a model: what sampling, sensors and steps leave of
+    /// it, relative to the line.
     pub(crate) const LINE_ERROR: f64 = 2e-3;
-    /// Departure of every line that is not held against a model whose quantities are known within tolerances, relative to the line.
+    /// Departure of every line that is not held against a model whose quantities are known within tolerances,
+    /// relative to the line.
     pub(crate) const LINE_ERROR_WITHIN_TOLERANCES: f64 = 0.03;
     /// e^{−at} at which a windowed record is cut off, as an exponent.
     pub(crate) const CUT: f64 = 6.0;
@@ -119,8 +128,8 @@ pub(crate) mod search {
     pub(crate) const MEDIUM: f64 = 5.0;
     /// The same of a long one.
     pub(crate) const LONG: f64 = 30.0;
-    /// The same of the windows from which a joint's force is reconstructed: the shorter, the less the fixture's errors add up; the longer, the more
-    /// is seen.
+    /// The same of the windows from which a joint's force is reconstructed: the shorter, the less the
+    /// fixture's errors add up; the longer, the more is seen.
     pub(crate) const RECONSTRUCTED: [f64; 3] = [2.0, 5.0, 12.0];
     /// Steps in a period of the fastest elastic motion.
     pub(crate) const STEPS_IN_PERIOD: f64 = 30.0;
@@ -134,7 +143,8 @@ pub(crate) mod search {
     pub(crate) const CONTRADICTION_SHARE: f64 = 3e-3;
     /// Share explained, relative to the best kind's, below which a kind is not fitted.
     pub(crate) const WEAK_KIND: f64 = 0.1;
-    /// χ² over that of the best from which hypotheses are further from it than any longer window could bring them back.
+    /// χ² over that of the best from which hypotheses are further from it than any longer window could bring
+    /// them back.
     pub(crate) const BEHIND: f64 = 1.5;
     /// χ² that is allowed beside.
     pub(crate) const BEHIND_BESIDE: f64 = 50.0;
@@ -148,14 +158,15 @@ pub(crate) mod search {
     pub(crate) const LINEAR_RENEWALS: usize = 5;
     /// The same for each start of a kind of law in the short window.
     pub(crate) const START_RENEWALS: usize = 4;
-    /// Derivatives taken at the most for a hypothesis in one window: a fit that is cut short is carried into the next as a false minimum.
+    /// Derivatives taken at the most for a hypothesis in one window: a fit that is cut short is carried into
+    /// the next as a false minimum.
     pub(crate) const RENEWALS: usize = 20;
     /// χ² per degree of freedom above which a second law is looked for.
     pub(crate) const SEEK_MORE: f64 = 3.0;
     /// Error relative to the responses above which it is as well: both must be exceeded.
     pub(crate) const SEEK_MORE_ERROR: f64 = 0.05;
-    /// Share of what is left of χ² beyond noise that the first law, and a second and last one, must explain to be named: a fit caught in a false
-    /// minimum explains a part, and no name should be given for it.
+    /// Share of what is left of χ² beyond noise that the first law, and a second and last one, must explain
+    /// to be named: a fit caught in a false minimum explains a part, and no name should be given for it.
     pub(crate) const WORTH: [f64; 2] = [0.75, 0.1];
     /// Fall of χ² and priors that a law must bring in any case.
     pub(crate) const LEAST_GAIN: f64 = 30.0;
@@ -176,7 +187,8 @@ pub(crate) mod fit {
     pub(crate) const REUSE: f64 = 0.05;
     /// Longest step of a coordinate: beyond it a linearised model says nothing.
     pub(crate) const LONGEST: f64 = 4.0;
-    /// The same of an effect's, a logarithm or a part of where it began: a spring that no longer slips, or never touches, would not find back.
+    /// The same of an effect's, a logarithm or a part of where it began: a spring that no longer slips, or
+    /// never touches, would not find back.
     pub(crate) const LONGEST_OF_EFFECT: f64 = 0.4;
 }
 
@@ -206,14 +218,17 @@ pub(crate) mod suggestions {
 pub(crate) mod horizon {
     /// Samples over which departures are averaged.
     pub(crate) const BLOCK: usize = 64;
-    /// Disturbances of the force in its noise's deviations: to either side, and so large that contacts which are nearly made are made.
+    /// Disturbances of the force in its noise's deviations: to either side, and so large that contacts which
+    /// are nearly made are made.
     pub(crate) const DISTURBANCES: [f64; 2] = [3.0, -3.0];
     /// Departure, in deviations of the response's noise, from which on a record is not followed.
     pub(crate) const TOLERATED: f64 = 1.0;
-    /// Departures of the same noise in the linear model, which weights allow for, up to which nothing is amiss.
+    /// Departures of the same noise in the linear model, which weights allow for, up to which nothing is
+    /// amiss.
     pub(crate) const LINEAR_DEPARTURES: f64 = 4.0;
-    /// Deviations of the effects' parameters, the fixture's quantities following them, that must not be felt: together all records are far more
-    /// sensitive than one, so that in a record that can be followed they are not.
+    /// Deviations of the effects' parameters, the fixture's quantities following them, that must not be felt:
+    /// together all records are far more sensitive than one, so that in a record that can be followed they
+    /// are not.
     pub(crate) const DEVIATIONS: f64 = 3.0;
     /// Variance of an effect's coordinate up to which it is moved so.
     pub(crate) const CERTAIN: f64 = 0.01;
@@ -223,11 +238,13 @@ pub(crate) mod horizon {
 pub(crate) mod judgement {
     /// χ² per degree of freedom above which a model leaves something unexplained.
     pub(crate) const LEFT_OVER: f64 = 1.5;
-    /// How much finer the last fit steps than the search: what steps leave of bias must not exceed what noise leaves of doubt.
+    /// How much finer the last fit steps than the search: what steps leave of bias must not exceed what noise
+    /// leaves of doubt.
     pub(crate) const FINER: usize = 2;
     /// Halvings of a step with an event in that fit.
     pub(crate) const JUDGE_HALVINGS: usize = 4;
-    /// Relative deviation that steps and sampling leave in a parameter beside noise, as measured on the simulated laboratory.
+    /// Relative deviation that steps and sampling leave in a parameter beside noise, as measured on the
+    /// simulated laboratory.
     pub(crate) const PARAMETER_ERROR: f64 = 2.5e-3;
     /// χ² that a law with a parameter more must gain for it to be as probable.
     pub(crate) const PARAMETER_COST: f64 = 7.0;
@@ -253,7 +270,8 @@ pub(crate) mod levels {
     pub(crate) const ABOUT_PEAK: (f64, f64) = (0.85, 1.15);
     /// Half-power widths about the resonances that are used.
     pub(crate) const WIDTHS: f64 = 10.0;
-    /// By how much variances about a resonance, read from the scatter of the lines, may be too small against those beside it.
+    /// By how much variances about a resonance, read from the scatter of the lines, may be too small against
+    /// those beside it.
     pub(crate) const SCATTER_DOUBT: f64 = 1.25;
     /// Share of the narrowest spacing of lines up to which lines of several levels are one.
     pub(crate) const SAME_LINE: f64 = 0.01;
@@ -330,8 +348,9 @@ pub(crate) mod naming {
     pub(crate) const LEVELS_FOR_ONE: usize = 3;
     /// The same for two laws together.
     pub(crate) const LEVELS_FOR_TWO: usize = 6;
-    /// Relative deviation of a law's parameters from what the balance of one harmonic leaves out: against the laboratory's nine harmonics, a tenth of
-    /// the usual noise and a fixture that is exact, they err by 0.1 to 0.7 %.
+    /// Relative deviation of a law's parameters from what the balance of one harmonic leaves out: against the
+    /// laboratory's nine harmonics, a tenth of the usual noise and a fixture that is exact, they err by 0.1
+    /// to 0.7 %.
     pub(crate) const HARMONIC_BALANCE_ERROR: f64 = 5e-3;
     /// Probability from which an alternative is listed.
     pub(crate) const LEAST_SHOWN: f64 = 5e-4;

@@ -20,7 +20,8 @@ impl Windowed {
         Windowed { fourier: Fourier::new(window.len()), window, interval_s }
     }
 
-    /// Signals followed by as many zeros, so that what filters smear past the end does not come back at the beginning.
+    /// Signals followed by as many zeros, so that what filters smear past the end does not come back at the
+    /// beginning.
     pub(crate) fn padded(window: Vec<f64>, interval_s: f64) -> Self {
         Windowed { fourier: Fourier::new(2 * window.len()), window, interval_s }
     }
@@ -69,14 +70,14 @@ pub(crate) fn rising(at: f64, from: f64, to: f64) -> f64 {
     0.5 - 0.5 * (PI * ((at - from) / (to - from)).clamp(0.0, 1.0)).cos()
 }
 
-/// The band-limited signal through `samples`, at `factor` instants an interval from the first sample on: sampling says nothing of what lies
-/// above half of its rate. The signal is taken to begin and end at rest.
+/// The band-limited signal through `samples`, at `factor` instants an interval from the first sample on:
+/// sampling says nothing of what lies above half of its rate. The signal is taken to begin and end at rest.
 pub(crate) fn oversampled(samples: &[f64], factor: usize) -> Vec<f64> {
     filtered(samples, factor, |_| 1.0)
 }
 
-/// As [`oversampled`], raised so that straight lines drawn between the instants have the spectrum of the signal: drawing them lowers a line of
-/// angular frequency ω by (sin x/x)², x = ωh/2.
+/// As [`oversampled`], raised so that straight lines drawn between the instants have the spectrum of the
+/// signal: drawing them lowers a line of angular frequency ω by (sin x/x)², x = ωh/2.
 pub(crate) fn oversampled_for_lines(samples: &[f64], factor: usize) -> Vec<f64> {
     filtered(samples, factor, |x| if x > 0.0 { (x / x.sin()).powi(2) } else { 1.0 })
 }
@@ -99,8 +100,8 @@ fn filtered(samples: &[f64], factor: usize, gain: impl Fn(f64) -> f64) -> Vec<f6
     inverse.signal(&mut lines)
 }
 
-/// Standard deviation of a signal's white noise, from the median line of its last quarter: what still rings there is a few lines among many, and
-/// the median does not see them.
+/// Standard deviation of a signal's white noise, from the median line of its last quarter: what still rings
+/// there is a few lines among many, and the median does not see them.
 pub(crate) fn noise(values: &[f64]) -> f64 {
     let length = (values.len() / TAIL_PARTS).max(FEWEST_IN_TAIL.min(values.len()));
     let tail = &values[values.len() - length..];

@@ -10,11 +10,13 @@ use jointscope_wording::Summary;
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Answer {
-    /// The fixture that was diagnosed: the one given, under the recording's exponential window where its FRFs have one.
+    /// The fixture that was diagnosed: the one given, under the recording's exponential window where its FRFs
+    /// have one.
     pub fixture: Fixture,
     /// What was found.
     pub outcome: Outcome,
-    /// Probability that responses proportional to the force change as much between strengths or levels; `None` where that was not judged.
+    /// Probability that responses proportional to the force change as much between strengths or levels;
+    /// `None` where that was not judged.
     pub homogeneity: Option<f64>,
     /// The fixture refitted within its tolerances, its own effects kept.
     pub refitted: Fixture,

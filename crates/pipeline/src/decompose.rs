@@ -23,7 +23,8 @@ pub struct DecomposeOptions {
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Decomposition {
-    /// The fixture that the joints were found with: the one given, under the recording's exponential window where its FRFs have one.
+    /// The fixture that the joints were found with: the one given, under the recording's exponential window
+    /// where its FRFs have one.
     pub fixture: Fixture,
     /// What was found.
     pub found: Joints,
@@ -76,7 +77,8 @@ impl Remarks for Decomposition {
     }
 }
 
-/// Finds the joint of `fixture` in `measurement`, or all its joints at once where it has several and none is named, or the one lies in a loop.
+/// Finds the joint of `fixture` in `measurement`, or all its joints at once where it has several and none is
+/// named, or the one lies in a loop.
 ///
 /// # Errors
 /// See [`Error`]; [`Error::concern`] says which of the inputs is at fault.

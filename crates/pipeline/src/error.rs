@@ -1,4 +1,5 @@
-//! Why files are no recording of a fixture, and why a recording gets no answer: the errors of the crates below, in one sentence each.
+//! Why files are no recording of a fixture, and why a recording gets no answer: the errors of the crates
+//! below, in one sentence each.
 
 use jointscope_decomposition::{DecompositionError, SeveralError};
 use jointscope_diagnosis::DiagnosisError;

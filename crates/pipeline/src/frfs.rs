@@ -58,7 +58,8 @@ impl MeasuredFrfs {
         Ok(MeasuredFrfs { frfs, notes, window_decay: test.estimate.decay, hammer_test: Some(test) })
     }
 
-    /// The same as the FRFs are meant: what slips of the test or its files made of them is put right or left out, and said in the notes.
+    /// The same as the FRFs are meant: what slips of the test or its files made of them is put right or left
+    /// out, and said in the notes.
     ///
     /// # Errors
     /// FRFs without any signal, or of which a part was changed.
@@ -66,7 +67,8 @@ impl MeasuredFrfs {
         self.put_right(fixture, |_| Ok(()))
     }
 
-    /// As [`MeasuredFrfs::screened`], and masses of the fixture that the recording tells to be in another unit are refused.
+    /// As [`MeasuredFrfs::screened`], and masses of the fixture that the recording tells to be in another
+    /// unit are refused.
     pub(crate) fn plausible(self, fixture: &Fixture) -> Result<Self, Error> {
         self.put_right(fixture, |oddities| {
             let slip = oddities.iter().find_map(|oddity| match oddity {
@@ -89,7 +91,8 @@ impl MeasuredFrfs {
         Ok(self)
     }
 
-    /// `fixture` as these FRFs show it: under their exponential window, if there is one. The fixture's own effects stay.
+    /// `fixture` as these FRFs show it: under their exponential window, if there is one. The fixture's own
+    /// effects stay.
     ///
     /// # Errors
     /// A window that the fixture cannot have beside its own effects.

@@ -28,13 +28,15 @@ impl HammerTest {
         Ok(HammerTest { hits: hits.to_vec(), estimate, baseline: options.baseline })
     }
 
-    /// The hits that the estimate uses, without their baselines: an offset that differs from hit to hit changes FRFs of single hits under a window, as no law of a joint does.
+    /// The hits that the estimate uses, without their baselines: an offset that differs from hit to hit
+    /// changes FRFs of single hits under a window, as no law of a joint does.
     pub(crate) fn hits_in_use(&self) -> Vec<Hit> {
         let in_use = self.hits.iter().zip(&self.estimate.hits).filter(|(_, report)| report.used);
         in_use.map(|(hit, _)| without_baselines(hit, self.baseline)).collect()
     }
 
-    /// `FRFs were estimated from the hits: H1, 9 hits at 1, 9 at 2, on 1975 lines from 0.78125 to 1543 Hz`, of those FRFs that are used.
+    /// `FRFs were estimated from the hits: H1, 9 hits at 1, 9 at 2, on 1975 lines from 0.78125 to 1543 Hz`,
+    /// of those FRFs that are used.
     pub fn says(&self, frfs: &FrfSet, estimator: Estimator) -> String {
         let excitations = self.estimate.excitations.iter();
         let points: Vec<String> =

@@ -7,7 +7,8 @@ use jointscope_nonlinear::{Held, SteppedDiagnosis, SteppedError, SteppedLevel, V
 use jointscope_recordings::{HeldAmplitude, Recording};
 use jointscope_wording::{Remarks, Says};
 
-/// Tests whether the FRFs of `recording` change with level; if so, the law is sought. FRFs of one level are passed on as they are.
+/// Tests whether the FRFs of `recording` change with level; if so, the law is sought. FRFs of one level are
+/// passed on as they are.
 pub(crate) fn homogeneity(
     fixture: &Fixture,
     recording: &Recording,

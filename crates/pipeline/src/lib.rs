@@ -1,4 +1,5 @@
-//! One route from a test to what the fixture leaves out, and one to its joints. The program, the facade and `prove` all take them, so that what is scored is what is used.
+//! One route from a test to what the fixture leaves out, and one to its joints. The program, the facade and
+//! `prove` all take them, so that what is scored is what is used.
 //!
 //! ```text
 //! recording              homogeneity                         answer
@@ -15,15 +16,18 @@
 //! ```
 //!
 //! * [`Measurement`]: what a test recorded, read from universal files;
-//! * [`MeasuredFrfs`]: its FRFs at one level, recorded as such or estimated from its hits ([`HammerTest`]), for analyses of their own;
+//! * [`MeasuredFrfs`]: its FRFs at one level, recorded as such or estimated from its hits ([`HammerTest`]),
+//!   for analyses of their own;
 //! * [`diagnose`] with [`Options`]: the route above;
 //! * [`decompose`]: the way to the joint in a measurement, or to all joints ([`Decomposition`]);
-//! * [`Answer`]: which way it went ([`Outcome`]), the refitted and the repaired fixture, notes for the reader;
+//! * [`Answer`]: which way it went ([`Outcome`]), the refitted and the repaired fixture, notes for the
+//!   reader;
 //! * [`measured_damping`]: a fixture with the damping ratios of measured modes.
 //!
-//! Two rules hold on every branch. A test of homogeneity that fails (hits all alike, levels too close) does not end the diagnosis: the FRFs are
-//! diagnosed, and a note says what could not be judged. Fixtures that are handed back keep the effects of the fixture that was given; an
-//! exponential window and what was found are added.
+//! Two rules hold on every branch. A test of homogeneity that fails (hits all alike, levels too close) does
+//! not end the diagnosis: the FRFs are diagnosed, and a note says what could not be judged. Fixtures that are
+//! handed back keep the effects of the fixture that was given; an exponential window and what was found are
+//! added.
 //!
 //! ```
 //! use jointscope_fixture::Fixture;

@@ -19,7 +19,8 @@ pub enum Measurement {
 }
 
 impl Measurement {
-    /// Reads a test of `fixture` from its files. Files with time histories alone are hits; beside FRFs, time histories are left aside.
+    /// Reads a test of `fixture` from its files. Files with time histories alone are hits; beside FRFs, time
+    /// histories are left aside.
     ///
     /// # Errors
     /// See [`MeasurementError`].

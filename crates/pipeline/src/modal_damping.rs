@@ -1,4 +1,5 @@
-//! Measured damping ratios into a fixture: measured modes matched with the modes of the assembly as it stands.
+//! Measured damping ratios into a fixture: measured modes matched with the modes of the assembly as it
+//! stands.
 
 use jointscope_fixture::{Damping, EffectKind, Fixture, FixtureError, Quantity, RatiosOf, Spread};
 use jointscope_lumped::{Assembly, LumpedError, Station};
@@ -46,13 +47,14 @@ pub enum MeasuredDampingError {
     Fixture(#[from] FixtureError),
 }
 
-/// How far beyond the band elastic modes of the fixture are looked for: measured and modelled frequencies differ.
+/// How far beyond the band elastic modes of the fixture are looked for: measured and modelled frequencies
+/// differ.
 const BEYOND: f64 = 1.2;
 
 /// Puts the measured ratios, with their standard deviations, into the fixture's `modal_ratios`.
 ///
-/// Ratios of elastic modes below the highest matched one that were not matched stay what the fixture says of them; where it says nothing, they are the mean of the
-/// measured ones, of unknown deviation.
+/// Ratios of elastic modes below the highest matched one that were not matched stay what the fixture says of
+/// them; where it says nothing, they are the mean of the measured ones, of unknown deviation.
 ///
 /// # Errors
 /// See [`MeasuredDampingError`].
@@ -167,7 +169,8 @@ fn remarks(analysis: &ModalAnalysis, matches: &Matches, elastic: &[f64], last: u
     all
 }
 
-/// That the ratios are of the modes of bodies, joints and supports, and so are the frequencies they are matched by.
+/// That the ratios are of the modes of bodies, joints and supports, and so are the frequencies they are
+/// matched by.
 fn without_effects(fixture: &Fixture) -> Option<String> {
     let structural = fixture.effects().map(|effect| effect.kind).filter(|kind| !kind.is_instrumental());
     let names: BTreeSet<&str> = structural.map(EffectKind::name).collect();

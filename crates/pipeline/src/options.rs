@@ -21,7 +21,8 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// All lines and FRFs; FRFs by H1, under an exponential window where a record ends before the motion does.
+    /// All lines and FRFs; FRFs by H1, under an exponential window where a record ends before the motion
+    /// does.
     fn default() -> Self {
         let estimate = EstimateOptions {
             response_window: ResponseWindow::Auto,
@@ -37,7 +38,8 @@ impl Options {
         NonlinearOptions { band: self.diagnosis.band, exact: self.diagnosis.exact }
     }
 
-    /// Refuses a choice of lines that leaves none, or so few that they tell neither a mode nor a misfit from noise.
+    /// Refuses a choice of lines that leaves none, or so few that they tell neither a mode nor a misfit from
+    /// noise.
     pub(crate) fn check(&self, frfs: &FrfSet) -> Result<(), Error> {
         let within = |hz: f64, &(from, to): &(f64, f64)| hz >= from && hz <= to;
         let in_use = |hz: f64| {

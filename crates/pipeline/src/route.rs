@@ -12,7 +12,8 @@ const RATIO: f64 = 0.005;
 /// Modes that have one of their own, at the most.
 const MODES: usize = 12;
 
-/// The fixture, with damping ratios of which nothing is known where it has no damping at all: nothing that was recorded has none.
+/// The fixture, with damping ratios of which nothing is known where it has no damping at all: nothing that
+/// was recorded has none.
 fn damped(fixture: Fixture, measured: &mut MeasuredFrfs) -> Result<Fixture, Error> {
     let of_supports =
         fixture.supports().iter().any(|s| s.damping.is_some() || s.rotational_damping.is_some());

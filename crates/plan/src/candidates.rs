@@ -1,4 +1,5 @@
-//! What could be measured: every FRF between the fixture's points, masses at them, no supports, averages, and every quantity that scales and callipers reach.
+//! What could be measured: every FRF between the fixture's points, masses at them, no supports, averages, and
+//! every quantity that scales and callipers reach.
 
 use crate::PlanError;
 use crate::measure::{Measure, two_digits};
@@ -10,7 +11,8 @@ use jointscope_diagnosis::Hypothesis;
 use jointscope_fixture::{BodyKind, Fixture, QuantityKey};
 use jointscope_spectra::{Channel, Dof, FrfPair};
 
-/// The points between which FRFs are considered: those that are named, or all of a small structure; of many those where something is, and others evenly.
+/// The points between which FRFs are considered: those that are named, or all of a small structure; of many
+/// those where something is, and others evenly.
 pub(crate) fn points(
     fixture: &Fixture,
     named: &[String],
@@ -47,7 +49,8 @@ pub(crate) fn points(
     Ok(chosen.into_iter().map(|i| all[i].clone()).collect())
 }
 
-/// The fixture where FRFs are recorded, or considered between these points: what only other points would show is exact.
+/// The fixture where FRFs are recorded, or considered between these points: what only other points would show
+/// is exact.
 pub(crate) fn with_idle_points_exact(fixture: Fixture, points: &[String], present: &[FrfPair]) -> Fixture {
     let driving = points.iter().map(|point| FrfPair::transverse(point, point));
     let channels: Vec<FrfPair> = driving.chain(present.iter().cloned()).collect();

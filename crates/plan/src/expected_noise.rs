@@ -1,7 +1,8 @@
 //! The noise that a measurement to come will have, by what the present one has.
 //!
-//! Response noise is a floor in the accelerance, force noise a share of |H|². A floor belongs to a sensor and its range: of an FRF that was never measured it is either
-//! as high as that of the present ones or in proportion to its own size, whichever is more.
+//! Response noise is a floor in the accelerance, force noise a share of |H|². A floor belongs to a sensor and
+//! its range: of an FRF that was never measured it is either as high as that of the present ones or in
+//! proportion to its own size, whichever is more.
 
 use crate::settings::noise::{FLOOR_WINDOW, FORCE_SHARE};
 use jointscope_diagnosis::Observation;
@@ -44,7 +45,8 @@ impl ExpectedNoise {
         ExpectedNoise { share, floor, relative }
     }
 
-    /// Of a test that nobody has made, with these shares of |H| and of its root mean square as standard deviations.
+    /// Of a test that nobody has made, with these shares of |H| and of its root mean square as standard
+    /// deviations.
     pub(crate) fn assumed(lines: usize, share: f64, floor: f64) -> Self {
         ExpectedNoise { share: share * share, floor: vec![0.0; lines], relative: vec![floor * floor; lines] }
     }

@@ -1,7 +1,8 @@
 //! Names weighed by one more test, of the structure in another state: with a known mass, on another support.
 //!
-//! The two tests have the structure's quantities and the name's parameters in common. What the first one tells of them, near its fit a normal distribution with its full
-//! covariance, is what is known beforehand when the second is fitted; so nothing counts twice.
+//! The two tests have the structure's quantities and the name's parameters in common. What the first one
+//! tells of them, near its fit a normal distribution with its full covariance, is what is known beforehand
+//! when the second is fitted; so nothing counts twice.
 
 use crate::PlanError;
 use crate::candidates;
@@ -16,8 +17,8 @@ use jointscope_spectra::FrfPair;
 use jointscope_wording::effect_name;
 use num_complex::Complex64;
 
-/// The names that a diagnosis has left, with the probabilities that `further`, the FRFs of the structure as the fixture beside them describes it, leaves them together
-/// with the present ones; the most probable first.
+/// The names that a diagnosis has left, with the probabilities that `further`, the FRFs of the structure as
+/// the fixture beside them describes it, leaves them together with the present ones; the most probable first.
 ///
 /// # Errors
 /// See [`PlanError`].

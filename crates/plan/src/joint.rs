@@ -1,7 +1,8 @@
 //! What to measure for a narrower interval of a joint's stiffness or dashpots.
 //!
-//! The joint's own numbers are taken as free, whatever the fixture states of them; everything else is known as the fixture says. Near the fit of the present FRFs, or of the
-//! fixture as it stands where there are none, information adds up: J + J_new, with the covariance (J + J_new)⁻¹.
+//! The joint's own numbers are taken as free, whatever the fixture states of them; everything else is known
+//! as the fixture says. Near the fit of the present FRFs, or of the fixture as it stands where there are
+//! none, information adds up: J + J_new, with the covariance (J + J_new)⁻¹.
 
 mod free;
 mod wanted;
@@ -36,7 +37,8 @@ pub enum Start<'a> {
 }
 
 impl Plan {
-    /// Plans what makes an interval of a joint's element narrower. The joint's elements that are not zero are free; the fixture's own effects are taken as they are.
+    /// Plans what makes an interval of a joint's element narrower. The joint's elements that are not zero are
+    /// free; the fixture's own effects are taken as they are.
     ///
     /// # Errors
     /// See [`PlanError`].
@@ -177,7 +179,8 @@ impl Joints<'_> {
         all
     }
 
-    /// What narrows the interval by enough: of what reaches it the least effort first, of the rest the narrowest.
+    /// What narrows the interval by enough: of what reaches it the least effort first, of the rest the
+    /// narrowest.
     fn suggestions(
         &self,
         mut ranked: Vec<(f64, &Candidate)>,
@@ -310,7 +313,8 @@ impl Joints<'_> {
         Some(Candidate { measure, information: sum.information(0), known: Some((hypothesis, carried)) })
     }
 
-    /// The best first, then the best beside that, until the interval is as narrow as wanted: of single FRFs and quantities.
+    /// The best first, then the best beside that, until the interval is as narrow as wanted: of single FRFs
+    /// and quantities.
     fn together(&self, all: &[Candidate], known: &[f64]) -> Option<(Vec<String>, f64)> {
         let single = |candidate: &&Candidate| {
             matches!(candidate.measure, Measure::Frf { .. } | Measure::Quantity { .. })

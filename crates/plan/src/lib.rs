@@ -1,16 +1,24 @@
 //! What to measure next.
 //!
-//! A diagnosis may leave several names for one finding, and an identified joint an interval that is too wide. Which measurement settles that can be computed before it is made: every
-//! name that is left predicts it, with the covariance of what is not known of the name's parameters and of the fixture's quantities.
+//! A diagnosis may leave several names for one finding, and an identified joint an interval that is too wide.
+//! Which measurement settles that can be computed before it is made: every name that is left predicts it,
+//! with the covariance of what is not known of the name's parameters and of the fixture's quantities.
 //!
-//! 1. **Names.** [`Remaining`] is what a diagnosis has left open. Each name is fitted to the present FRFs; the information of these, priors included, is what is known beforehand.
-//! 2. **Candidates.** [`Measure`]: every FRF between the fixture's points, more averages, a known mass, the structure off its supports, a quantity weighed or measured by itself.
-//! 3. **Noise.** A floor and a share of |H| as the present recording has them; an error of the model counts as noise where names were weighed with one.
-//! 4. **Worth.** By each name a measurement is normal about what it predicts. Expected ln of the Bayes factor (Kullback–Leibler divergence, both ways), Box and Hill's gain,
-//!    and by draws the probability that the diagnosis then is sure of the true name: all from products of columns, nothing as long as the measurement.
-//! 5. **Ranking.** [`Plan::between`] lists [`Suggestion`]s, the promise first, then the effort; [`Plan::for_interval`] does the same for the interval of a joint's element.
+//! 1. **Names.** [`Remaining`] is what a diagnosis has left open. Each name is fitted to the present FRFs;
+//!    the information of these, priors included, is what is known beforehand.
+//! 2. **Candidates.** [`Measure`]: every FRF between the fixture's points, more averages, a known mass, the
+//!    structure off its supports, a quantity weighed or measured by itself.
+//! 3. **Noise.** A floor and a share of |H| as the present recording has them; an error of the model counts
+//!    as noise where names were weighed with one.
+//! 4. **Worth.** By each name a measurement is normal about what it predicts. Expected ln of the Bayes factor
+//!    (Kullback–Leibler divergence, both ways), Box and Hill's gain, and by draws the probability that the
+//!    diagnosis then is sure of the true name: all from products of columns, nothing as long as the
+//!    measurement.
+//! 5. **Ranking.** [`Plan::between`] lists [`Suggestion`]s, the promise first, then the effort;
+//!    [`Plan::for_interval`] does the same for the interval of a joint's element.
 //!
-//! [`weighed_by`] puts two tests of one structure in different states together. `prove --plan` measures how often promises are kept.
+//! [`weighed_by`] puts two tests of one structure in different states together. `prove --plan` measures how
+//! often promises are kept.
 //!
 //! ```
 //! use jointscope_fixture::Fixture;

@@ -65,7 +65,8 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// The structure that is measured, where that is not the one which `fixture` describes; `None` where it is, or cannot be.
+    /// The structure that is measured, where that is not the one which `fixture` describes; `None` where it
+    /// is, or cannot be.
     pub fn changed(&self, fixture: &Fixture) -> Option<Fixture> {
         match self {
             Measure::AddedMass { mass, mass_std, body, x, x_std } => {
@@ -101,7 +102,8 @@ impl Measure {
         }
     }
 
-    /// How much work it is, in FRFs that are to be recorded; `present` were. What is weighed or measured with a calliper counts as one.
+    /// How much work it is, in FRFs that are to be recorded; `present` were. What is weighed or measured with
+    /// a calliper counts as one.
     pub(crate) fn effort(&self, present: usize) -> f64 {
         match self {
             Measure::Frf { .. } | Measure::Quantity { .. } => 1.0,

@@ -1,7 +1,9 @@
 //! What an error of the model itself leaves of a measurement.
 //!
-//! Where no fixture is right to the noise, names are weighed with an error of the model: of natural frequencies, damping ratios and residues. Between lines such an error is
-//! not independent: of one FRF it has three values a mode, not two a line. So it counts as noise so many times larger that all lines together tell no more than those values would.
+//! Where no fixture is right to the noise, names are weighed with an error of the model: of natural
+//! frequencies, damping ratios and residues. Between lines such an error is not independent: of one FRF it
+//! has three values a mode, not two a line. So it counts as noise so many times larger that all lines
+//! together tell no more than those values would.
 
 use crate::settings::noise::VALUES_OF_A_MODE;
 use jointscope_diagnosis::{Hypothesis, ModelError, Observation};
@@ -9,7 +11,8 @@ use jointscope_lumped::{Assembly, Instrument, accelerances};
 use jointscope_spectra::{FrfPair, SpectralLines};
 use num_complex::Complex64;
 
-/// Relative errors of a model, and how many times the lines of an FRF are more than the values that these move.
+/// Relative errors of a model, and how many times the lines of an FRF are more than the values that these
+/// move.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ModelErrorNoise {
     frequency: f64,

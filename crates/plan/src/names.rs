@@ -1,4 +1,5 @@
-//! The names that a diagnosis has left for one finding, each at its best fit, with what the present measurement tells of its parameters.
+//! The names that a diagnosis has left for one finding, each at its best fit, with what the present
+//! measurement tells of its parameters.
 
 use crate::PlanError;
 use crate::planned_test::PlannedTest;
@@ -72,8 +73,9 @@ impl Remaining {
 }
 
 impl Remaining {
-    /// The names, and beside those of a reference that is the only one those of the force of all references: with one reference there is no such name, and what
-    /// is measured next may have others. All of them have the probability that was stated together. Whether there are any is told as well.
+    /// The names, and beside those of a reference that is the only one those of the force of all references:
+    /// with one reference there is no such name, and what is measured next may have others. All of them have
+    /// the probability that was stated together. Whether there are any is told as well.
     pub(crate) fn with_the_force(&self) -> (Vec<(Effect, f64)>, bool) {
         let pairs = self.observation.pairs();
         let only = |name: &str| pairs.iter().all(|pair| pair.reference.is_named(name));
@@ -206,7 +208,8 @@ impl Names {
         self.names.iter().map(|name| factor(&name.information)).collect()
     }
 
-    /// The same for other states of the structure: coordinates that are the same are as well known, others as their priors say.
+    /// The same for other states of the structure: coordinates that are the same are as well known, others as
+    /// their priors say.
     pub(crate) fn known_in(&self, others: &[Hypothesis]) -> Option<Vec<Cholesky>> {
         let of = |(name, other): (&Name, &Hypothesis)| {
             factor(&carried(&name.information, &name.hypothesis, other))

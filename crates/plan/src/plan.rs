@@ -57,7 +57,8 @@ pub struct Plan {
 pub struct FrfGain {
     /// The FRF.
     pub frf: FrfPair,
-    /// Expected ln of the odds for the true name against its nearest rival, nats; for an interval its half-width then over that at present.
+    /// Expected ln of the odds for the true name against its nearest rival, nats; for an interval its
+    /// half-width then over that at present.
     pub gain: f64,
 }
 
@@ -295,7 +296,8 @@ impl Judge<'_> {
         Some(Products::of_number(&names, weight))
     }
 
-    /// Expected ln of the Bayes factor for the true name against its nearest rival, over the names as probable as they are.
+    /// Expected ln of the Bayes factor for the true name against its nearest rival, over the names as
+    /// probable as they are.
     fn expected(&self, rivals: &Rivals) -> f64 {
         let weights = self.names.weights();
         let total: f64 = weights.iter().sum();

@@ -1,4 +1,5 @@
-//! What a test of the structure would record: predictions of names on the lines and with the noise of a measurement to come.
+//! What a test of the structure would record: predictions of names on the lines and with the noise of a
+//! measurement to come.
 
 use crate::expected_noise::ExpectedNoise;
 use crate::model_error::ModelErrorNoise;
@@ -19,7 +20,8 @@ pub(crate) struct PlannedTest {
     pub lines: SpectralLines,
     /// Its noise.
     pub noise: ExpectedNoise,
-    /// Variance inflation: what the residuals of the present measurement show beyond their noise, those to come will show too.
+    /// Variance inflation: what the residuals of the present measurement show beyond their noise, those to
+    /// come will show too.
     pub inflation: f64,
     /// What an error of the model adds, where names were weighed with one.
     pub model_error: Option<ModelErrorNoise>,

@@ -3,15 +3,17 @@
 use jointscope_inference::weighted_products;
 use num_complex::Complex64;
 
-/// One name's prediction of a measurement, FRF after FRF: the values, and their derivatives by its coordinates.
+/// One name's prediction of a measurement, FRF after FRF: the values, and their derivatives by its
+/// coordinates.
 #[derive(Debug, Clone)]
 pub(crate) struct Predicted {
     pub values: Vec<Complex64>,
     pub derivatives: Vec<Vec<Complex64>>,
 }
 
-/// Inner products aᵀΣ⁻¹b of the columns of several names: the derivatives of the first by each of its coordinates, those of the second, …, and then the
-/// differences of all their values from the first one's. Products of independent measurements add up.
+/// Inner products aᵀΣ⁻¹b of the columns of several names: the derivatives of the first by each of its
+/// coordinates, those of the second, …, and then the differences of all their values from the first one's.
+/// Products of independent measurements add up.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Products {
     /// Coordinates by name.
@@ -41,7 +43,8 @@ impl Products {
         Products { widths, entries: weighted_products(&columns, weights) }
     }
 
-    /// Of one real number of variance one over `weight`: its value by each name, and its derivatives by that name's coordinates.
+    /// Of one real number of variance one over `weight`: its value by each name, and its derivatives by that
+    /// name's coordinates.
     pub(crate) fn of_number(names: &[(f64, Vec<f64>)], weight: f64) -> Self {
         let derivatives = names.iter().flat_map(|(_, derivatives)| derivatives.iter().copied());
         let column: Vec<f64> = derivatives.chain(names.iter().map(|(value, _)| value - names[0].0)).collect();

@@ -1,16 +1,18 @@
 //! Names as rivals over one measurement that has not been made: what it would tell, on average and how often.
 //!
-//! By name i, whose parameters are known to the covariance P_i, the measurement would be normal about m_i with the covariance S_i = Σ + J_i P_i J_iᵀ. Whitened by
-//! the noise Σ, S_i = I + A_i A_iᵀ with A_i = Σ^−½ J_i P_i^½. The expected ln of the Bayes factor for i against j, if i is true, is the divergence of the two
+//! By name i, whose parameters are known to the covariance P_i, the measurement would be normal about m_i
+//! with the covariance S_i = Σ + J_i P_i J_iᵀ. Whitened by the noise Σ, S_i = I + A_i A_iᵀ with A_i = Σ^−½
+//! J_i P_i^½. The expected ln of the Bayes factor for i against j, if i is true, is the divergence of the two
 //! (Kullback–Leibler),
 //!
 //! D_ij = ½ [tr(S_j⁻¹ S_i) − n + (m_i − m_j)ᵀ S_j⁻¹ (m_i − m_j) + ln det S_j − ln det S_i],
 //!
-//! and Box & Hill's expected gain (*Technometrics* 9 (1967) 57) is Σ_i<j p_i p_j (D_ij + D_ji). With S_j⁻¹ = I − A_j (I + A_jᵀA_j)⁻¹ A_jᵀ all of it follows from products of
-//! the columns of A and m: nothing is as long as the measurement.
+//! and Box & Hill's expected gain (*Technometrics* 9 (1967) 57) is Σ_i<j p_i p_j (D_ij + D_ji). With
+//! S_j⁻¹ = I − A_j (I + A_jᵀA_j)⁻¹ A_jᵀ all of it follows from products of the columns of A and m: nothing is
+//! as long as the measurement.
 //!
-//! What a diagnosis makes of one measurement is drawn from the same products: parameters of the true name and noise at random, and every name at the minimum
-//! of its χ² and priors, as the diagnosis weighs names.
+//! What a diagnosis makes of one measurement is drawn from the same products: parameters of the true name and
+//! noise at random, and every name at the minimum of its χ² and priors, as the diagnosis weighs names.
 
 use crate::products::Products;
 use crate::settings::outcome::{DRAWS, ROUNDING, SURE};
@@ -32,13 +34,14 @@ pub(crate) struct ExpectedOutcome {
     pub divergence: Vec<Vec<f64>>,
     /// Probability that the true name is sure thereafter.
     pub sure: f64,
-    /// Probability by pair that the true one of the two is at least so many times as probable as the other as sure is to unsure.
+    /// Probability by pair that the true one of the two is at least so many times as probable as the other as
+    /// sure is to unsure.
     pub separated: Vec<Vec<f64>>,
 }
 
 impl Rivals {
-    /// From the products of a measurement and, of each name, the factor of the information that there is of its coordinates before. `None` where products
-    /// are not finite.
+    /// From the products of a measurement and, of each name, the factor of the information that there is of
+    /// its coordinates before. `None` where products are not finite.
     pub(crate) fn of(products: &Products, known: &[Cholesky]) -> Option<Self> {
         let order = products.order();
         let mut entries = products.entries.clone();
@@ -94,7 +97,8 @@ impl Rivals {
         (0.5 * (own - own_explained - noise + apart - apart_explained + widths)).max(0.0)
     }
 
-    /// What the measurement would do: names have the weights `weights` now, up to a factor, and physics that none covers has `unlisted` against one for the best.
+    /// What the measurement would do: names have the weights `weights` now, up to a factor, and physics that
+    /// none covers has `unlisted` against one for the best.
     pub(crate) fn expected_outcome(&self, weights: &[f64], unlisted: f64, seed: u64) -> ExpectedOutcome {
         let count = weights.len();
         let divergence = (0..count)
@@ -178,7 +182,8 @@ mod tests {
 
     #[test]
     fn two_exact_names_d_deviations_apart_have_the_closed_form_of_their_odds() {
-        // y ~ N(0, 1) or N(d, 1): ln of the odds is normal about d²/2 with the variance d², whichever is true.
+        // y ~ N(0, 1) or N(d, 1): ln of the odds is normal about d²/2 with the variance d², whichever is
+        // true.
         for d in [0.5, 2.0, 4.0] {
             let products = Products::of_number(&[(0.0, vec![]), (d, vec![])], 1.0);
             let rivals =

@@ -1,4 +1,5 @@
-//! Sentences of a plan. They stand here and not in the crate of all other wording: a plan holds them, and stands above it.
+//! Sentences of a plan. They stand here and not in the crate of all other wording: a plan holds them, and
+//! stands above it.
 
 use crate::measure::Measure;
 use crate::names::NameNow;

@@ -1,4 +1,5 @@
-//! Every tuned number of a plan, with the reason for it where there is one to state, by the step that it decides.
+//! Every tuned number of a plan, with the reason for it where there is one to state, by the step that it
+//! decides.
 
 /// Which measurements are considered.
 pub(crate) mod candidates {
@@ -32,7 +33,8 @@ pub(crate) mod noise {
     pub(crate) const FLOOR_WINDOW: usize = 20;
     /// Share of a variance that the force may make where the rest of it tells the floor.
     pub(crate) const FORCE_SHARE: f64 = 0.5;
-    /// Noise of a test that nobody has made: shares of |H| and of its root mean square, as standard deviations of the average.
+    /// Noise of a test that nobody has made: shares of |H| and of its root mean square, as standard
+    /// deviations of the average.
     pub(crate) const ASSUMED: (f64, f64) = (3e-3, 3e-3);
     /// Values of an FRF that a mode's errors move: its frequency, damping and residue.
     pub(crate) const VALUES_OF_A_MODE: f64 = 3.0;
@@ -86,7 +88,8 @@ pub(crate) mod ranking {
 pub(crate) mod interval {
     /// Share of the present interval that a measurement must leave out to be worth being told.
     pub(crate) const LEAST_REDUCTION: f64 = 0.01;
-    /// Half an interval beyond which the element is not determined, in stated values: what is left is what was taken to be known of it beforehand, or a fit that ran away.
+    /// Half an interval beyond which the element is not determined, in stated values: what is left is what
+    /// was taken to be known of it beforehand, or a fit that ran away.
     pub(crate) const UNDETERMINED: f64 = 10.0;
     /// Variance inflation from which a fit does not meet its recording.
     pub(crate) const POOR_FIT: f64 = 100.0;

@@ -13,7 +13,8 @@ pub struct Suggestion {
     pub to_do: String,
     /// The same in its parts.
     pub action: Measure,
-    /// Expected ln of the Bayes factor for the true name against its nearest rival, nats; the names as probable as they are now.
+    /// Expected ln of the Bayes factor for the true name against its nearest rival, nats; the names as
+    /// probable as they are now.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expected_log_odds: Option<f64>,
     /// Box & Hill's expected gain over all pairs of names, nats.
@@ -34,7 +35,8 @@ pub struct Suggestion {
 }
 
 impl Suggestion {
-    /// Whether it promises what the plan is for: one name sure thereafter, or an interval as narrow as wanted.
+    /// Whether it promises what the plan is for: one name sure thereafter, or an interval as narrow as
+    /// wanted.
     pub fn is_promising(&self) -> bool {
         let reaches = self.interval.as_ref().is_some_and(|interval| interval.reaches);
         reaches || self.sure.is_some_and(|sure| sure >= SURE)

@@ -63,7 +63,8 @@ fn gains_of_two_sensors_are_told_apart_by_a_driving_point_as_the_closed_form_say
     let (sensor, force) = (gain(Place::Response("2".into()), factor), gain(Place::Force, 1.0 / factor));
     let remaining = remaining(&chain(), [sensor, force], &[("2", "1"), ("2", "2")]);
     let plan = Plan::between(&chain(), &remaining, &PlanOptions::default()).unwrap();
-    // FRF 1/1 is H by the one name and g·H by the other, whose g the present FRFs tell: ln g to a deviation of ε/√(4N).
+    // FRF 1/1 is H by the one name and g·H by the other, whose g the present FRFs tell: ln g to a deviation
+    // of ε/√(4N).
     let n = 2.0 * LINES as f64;
     let noise = NOISE * NOISE * 0.5 * (1.0 + factor * factor);
     let d2 = n * (factor - 1.0).powi(2) / noise;
@@ -163,7 +164,8 @@ fn a_further_test_with_a_known_mass_says_of_the_names_what_its_frfs_can_tell() {
         let of_the_sensor = |name: &&jointscope_plan::NameNow| name.effect.place == sensor.place;
         names.iter().find(of_the_sensor).unwrap().probability
     };
-    // The same FRF has both channels in it, mass or no mass, and the force beside them; the driving point has no sensor 2.
+    // The same FRF has both channels in it, mass or no mass, and the force beside them; the driving point has
+    // no sensor 2.
     assert!((probability_of_the_sensor(("2", "1")) - 0.32).abs() < 0.01);
     assert!(probability_of_the_sensor(("1", "1")) > 0.9);
 }
@@ -190,7 +192,8 @@ fn with_one_reference_the_force_of_all_references_is_a_name_too_and_takes_two_fr
     let plan = Plan::between(&chain(), &remaining, &PlanOptions::default()).unwrap();
     assert!(plan.names.iter().any(|name| name.effect.place == Place::Force), "{}", plan.question);
     assert!((plan.names.iter().map(|name| name.probability).sum::<f64>() - 0.96).abs() < 1e-9);
-    // 1/1 has only the hammer of the one name and of the force, 1/2 that of the force alone, 2/2 the sensor and the force.
+    // 1/1 has only the hammer of the one name and of the force, 1/2 that of the force alone, 2/2 the sensor
+    // and the force.
     let first = &plan.suggestions[0];
     assert!(matches!(&first.action, Measure::Frfs { frfs } if frfs.len() == 2), "{}", first.says);
     assert!(first.sure.unwrap() > 0.95 && plan.not_by_frfs.is_empty(), "{}", first.says);

@@ -44,7 +44,8 @@ pub struct Answer {
     pub verdict: Verdict,
     /// What was found, the strongest first.
     pub findings: Vec<Found>,
-    /// Objectives (χ² and the squared departures of the quantities) of the refitted and the repaired fixture, as stated.
+    /// Objectives (χ² and the squared departures of the quantities) of the refitted and the repaired fixture,
+    /// as stated.
     pub objectives: [f64; 2],
     /// χ² per degree of freedom: nominal, refitted, repaired.
     pub chi2_per_dof: [f64; 3],
@@ -77,7 +78,8 @@ pub trait Reply: Sized {
     fn to_value(&self) -> Value;
 }
 
-/// What the program's own route answers under its default options: to fixture and recording, and to nothing else.
+/// What the program's own route answers under its default options: to fixture and recording, and to nothing
+/// else.
 pub(crate) fn diagnosed<R: Clone + Into<Measurement>>(case: &Case<R>) -> Result<Diagnosed, NoAnswer> {
     Ok(diagnose(&case.believed, &case.recorded.clone().into(), &Options::default(), |_| ())?)
 }
@@ -117,7 +119,8 @@ impl Reply for Answer {
     }
 }
 
-/// The 95 % interval of each of an effect's parameters: what holds a block against rotation has no abscissa, and none is stated.
+/// The 95 % interval of each of an effect's parameters: what holds a block against rotation has no abscissa,
+/// and none is stated.
 fn intervals(effect: &Effect, estimates: &[Estimate]) -> Vec<Option<[f64; 2]>> {
     let own = |name: &str| estimates.iter().find(|estimate| estimate.parameter.name == name);
     let parameters = effect.kind.spec().parameters.iter();

@@ -33,8 +33,8 @@ impl<A: Reply + Send> Answers<A> {
         (answer, seconds)
     }
 
-    /// Answers to all cases on `threads` workers; `told` hears the number of answers given so far. A case keeps to one core, so its seconds
-    /// mean the same however many workers there are.
+    /// Answers to all cases on `threads` workers; `told` hears the number of answers given so far. A case
+    /// keeps to one core, so its seconds mean the same however many workers there are.
     pub fn by<R: Sync>(
         cases: &[Case<R>],
         threads: usize,

@@ -1,10 +1,10 @@
-//! Two ways of dealing with a fixture that disagrees with its recording, without asking what was left out: what the diagnosis is
-//! compared with.
+//! Two ways of dealing with a fixture that disagrees with its recording, without asking what was left out:
+//! what the diagnosis is compared with.
 //!
-//! * **Parameter updating**: the quantities that the file states are moved until the model fits, once within their stated tolerances and
-//!   once within [`WIDER`] times those, so that they can take up what is missing.
-//! * **Nearest signature**: of all effects at all places in a few sizes, simulated in the refitted fixture, the one whose change of the FRFs
-//!   looks most like the misfit.
+//! * **Parameter updating**: the quantities that the file states are moved until the model fits, once within
+//!   their stated tolerances and once within [`WIDER`] times those, so that they can take up what is missing.
+//! * **Nearest signature**: of all effects at all places in a few sizes, simulated in the refitted fixture,
+//!   the one whose change of the FRFs looks most like the misfit.
 
 mod lookup;
 mod methods;

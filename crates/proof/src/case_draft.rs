@@ -10,8 +10,8 @@ use jointscope_rig::{Family, Instrument, Outside, StructureError, drawn_within_t
 use jointscope_spectra::FrfPair;
 use rand::Rng;
 
-/// Relative change of the recorded FRFs between which physics outside the vocabulary is drawn: it shows, and leaves the
-/// assembly recognisable.
+/// Relative change of the recorded FRFs between which physics outside the vocabulary is drawn: it shows, and
+/// leaves the assembly recognisable.
 const OUTSIDE_SHOWS: [f64; 2] = [0.03, 0.8];
 /// Costs Δχ² of graded effects: from what chance makes to what is plain.
 const GRADED: [f64; 2] = [3.0, 300.0];
@@ -31,7 +31,8 @@ pub(crate) trait HiddenPhysics {
         pairs: &[FrfPair],
     ) -> Result<Option<Vec<Effect>>, GenerationError>;
 
-    /// Physics outside the vocabulary, where the role asks for it; `None` where the fixture has no place for it.
+    /// Physics outside the vocabulary, where the role asks for it; `None` where the fixture has no place for
+    /// it.
     fn outside(&self, random: &mut impl Rng, truth: &Fixture, pairs: &[FrfPair]) -> Option<Outside>;
 
     /// By how much that may change the recorded FRFs, relative.
@@ -49,7 +50,8 @@ pub(crate) struct CaseDraft<H> {
 }
 
 impl<H: HiddenPhysics> CaseDraft<H> {
-    /// A case with its truth, not numbered yet; `None` where the fixture that was drawn has no place for what is to be hidden.
+    /// A case with its truth, not numbered yet; `None` where the fixture that was drawn has no place for what
+    /// is to be hidden.
     pub(crate) fn draw(&self, random: &mut impl Rng) -> Result<Option<(Case, Truth)>, GenerationError> {
         let mut believed = self.family.draw("concealed case", random)?;
         let truth = drawn_within_tolerance(&believed, random)?;

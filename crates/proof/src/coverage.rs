@@ -18,7 +18,8 @@ const LEVELS: [(f64, f64); 9] = [
     (0.99, 2.5758),
 ];
 
-/// The intervals of all hidden effects that show and were found under their own names, of parameters that the recording determines.
+/// The intervals of all hidden effects that show and were found under their own names, of parameters that the
+/// recording determines.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Coverage(pub(crate) Vec<Interval>);
 
@@ -62,8 +63,8 @@ impl Coverage {
         Share::count(&self.0, |interval| interval.holds)
     }
 
-    /// Nominal levels and how many intervals of that level would have held the true value, were they made from the same estimate and
-    /// deviation as those of 95 %.
+    /// Nominal levels and how many intervals of that level would have held the true value, were they made
+    /// from the same estimate and deviation as those of 95 %.
     pub fn by_level(&self) -> Vec<(f64, Share)> {
         let share =
             |half: f64| Share::count(&self.0, |interval| interval.deviation.is_some_and(|d| d.abs() <= half));
@@ -83,7 +84,8 @@ impl Serialize for Coverage {
     }
 }
 
-/// Departure of the truth in standard deviations. An interval that is lopsided about its estimate as that of a logarithm is taken as one.
+/// Departure of the truth in standard deviations. An interval that is lopsided about its estimate as that of
+/// a logarithm is taken as one.
 fn deviation(truth: f64, estimate: f64, [low, high]: [f64; 2]) -> f64 {
     let about_the_middle = 0.5 * (low + high);
     let even = (estimate - about_the_middle).abs() <= 1e-6 * (high - low);

@@ -11,8 +11,8 @@ use std::fmt::{self, Display, Formatter};
 const EDGES: [f64; 11] = [0.0, 5.0, 10.0, 20.0, 35.0, 50.0, 100.0, 200.0, 1e3, 1e4, f64::INFINITY];
 /// Share of effects found that counts as sure, in the fitted curve.
 const SURE: f64 = 0.95;
-/// Precision of the prior that keeps the fitted curve finite where all large effects are found and no small one: slopes beyond
-/// five a decade cannot be told from a step.
+/// Precision of the prior that keeps the fitted curve finite where all large effects are found and no small
+/// one: slopes beyond five a decade cannot be told from a step.
 const PRIOR: f64 = 0.02;
 /// Δχ² by which the smallest detectable effects are stated where no curve could be fitted.
 const USUAL: f64 = 50.0;
@@ -85,8 +85,8 @@ impl Smallest {
 pub struct Detection {
     /// Classes of Δχ², from the smallest.
     pub classes: Vec<SizeClass>,
-    /// Logistic curve of the share that is named over ln Δχ²: 1/(1 + exp(−(a + b·ln Δχ²))), by maximum of likelihood; `None` where nothing was
-    /// hidden.
+    /// Logistic curve of the share that is named over ln Δχ²: 1/(1 + exp(−(a + b·ln Δχ²))), by maximum of
+    /// likelihood; `None` where nothing was hidden.
     #[serde(rename = "course")]
     pub curve: Option<[f64; 2]>,
     /// Δχ² from which half are found; `None` where the curve does not rise to it.
@@ -144,7 +144,8 @@ fn logistic(x: f64) -> f64 {
     1.0 / (1.0 + (-x).exp())
 }
 
-/// The logistic curve by Newton's method, with a weak prior on its slope; its middle is free where there are found and missed effects.
+/// The logistic curve by Newton's method, with a weak prior on its slope; its middle is free where there are
+/// found and missed effects.
 fn logistic_fit(trials: &[Trial]) -> Option<[f64; 2]> {
     if trials.is_empty() {
         return None;

@@ -9,7 +9,8 @@ pub(crate) fn in_file<S: Serializer>(effect: &Effect, serializer: S) -> Result<S
     effect_value(effect).serialize(serializer)
 }
 
-/// Effects as [`effect_value`] has written them, of a fixture that was filed beside them; `None` of anything else.
+/// Effects as [`effect_value`] has written them, of a fixture that was filed beside them; `None` of anything
+/// else.
 pub(crate) fn filed_effects(fixture: &Value, effects: &Value) -> Option<Vec<Effect>> {
     let mut with_effects = fixture.clone();
     with_effects["physics"] = effects.clone();

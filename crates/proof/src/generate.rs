@@ -9,7 +9,8 @@ use jointscope_rig::{Family, Outside, generator, random_effect};
 use jointscope_spectra::FrfPair;
 use rand::{Rng, RngExt};
 
-/// The kinds that cases hide, in the order in which seeds draw them: what a seed stands for must not change when a kind is added.
+/// The kinds that cases hide, in the order in which seeds draw them: what a seed stands for must not change
+/// when a kind is added.
 pub const HIDDEN_KINDS: [EffectKind; 16] = [
     EffectKind::AddedMass,
     EffectKind::Support,
@@ -34,26 +35,29 @@ pub const HIDDEN_KINDS: [EffectKind; 16] = [
 pub struct Plan {
     /// Number of cases.
     pub cases: usize,
-    /// Number of further cases, numbered after the others, of one effect each that is made just so strong as to cost a fit without it a
-    /// Δχ² of 3 to 300: what the detection curve is drawn from.
+    /// Number of further cases, numbered after the others, of one effect each that is made just so strong as
+    /// to cost a fit without it a Δχ² of 3 to 300: what the detection curve is drawn from.
     pub graded: usize,
     /// Number of cases whose recording comes from a solid, numbered after these.
     pub solid: usize,
     /// Number of cases of hits over time, numbered after these.
     pub struck: usize,
-    /// Number of cases whose recording comes from a solid of which nothing is idealised, numbered after these.
+    /// Number of cases whose recording comes from a solid of which nothing is idealised, numbered after
+    /// these.
     pub solid_as_is: usize,
     /// Number of cases of lumped structures with an error in every mode, numbered after these.
     pub modal_errors: usize,
     /// Number of lumped cases whose one hidden thing is a flaw of the measuring chain, numbered after these.
     pub channel_flaws: usize,
-    /// Number of lumped cases whose one hidden thing is a load path beside a joint or to ground, or the footing of a joint, numbered after these.
+    /// Number of lumped cases whose one hidden thing is a load path beside a joint or to ground, or the
+    /// footing of a joint, numbered after these.
     pub load_paths: usize,
     /// Number of lumped cases of physics that no effect of a fixture file is, small and large, numbered last.
     pub unknown_physics: usize,
     /// Seed of all but the fresh ones.
     pub seed: u64,
-    /// A text (a commit's hash) that the last of the cases are drawn from, a quarter of them: cases that nobody can have tuned anything to.
+    /// A text (a commit's hash) that the last of the cases are drawn from, a quarter of them: cases that
+    /// nobody can have tuned anything to.
     pub fresh_from: Option<String>,
     /// The one case to make; all where none is named.
     pub only: Option<usize>,
@@ -92,7 +96,8 @@ pub const FAMILIES: [(&str, Family); 5] = [
     ("beam-and-block", Family::BeamAndBlock),
 ];
 
-/// Roles by case number, repeating: a quarter nulls, half singles, an eighth each of doubles and outside physics.
+/// Roles by case number, repeating: a quarter nulls, half singles, an eighth each of doubles and outside
+/// physics.
 const ROLES: [Role; 8] = [
     Role::Single,
     Role::Null,
@@ -112,7 +117,8 @@ impl Plan {
         if self.fresh_from.is_some() { self.cases.div_ceil(4) } else { 0 }
     }
 
-    /// Makes the laboratory's cases and, sealed, their truths. A case depends on the seed (or the text) and its number alone.
+    /// Makes the laboratory's cases and, sealed, their truths. A case depends on the seed (or the text) and
+    /// its number alone.
     ///
     /// # Errors
     /// See [`GenerationError`].

@@ -9,8 +9,8 @@ use jointscope_spectra::FrfSet;
 /// Lines on each side over which the recording's variance is averaged.
 const SMOOTHED_OVER: usize = 10;
 
-/// `truth` with its one effect made so strong that a fit without it should be worse by `wanted` in χ² and squared departures, to first
-/// order, under the noise of `recorded`.
+/// `truth` with its one effect made so strong that a fit without it should be worse by `wanted` in χ² and
+/// squared departures, to first order, under the noise of `recorded`.
 ///
 /// `None` where the effect does nothing, or its strength would be more than it was.
 pub(crate) fn scaled_to(

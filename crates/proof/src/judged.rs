@@ -143,8 +143,8 @@ impl<T: Judgeable> Judged<T> {
         self.findings().iter().map(|found| Name::of(&found.effect)).collect()
     }
 
-    /// What the hidden physics costs a fit that does without: Δχ², of two effects the smaller one's. A refit that ended in a false
-    /// minimum does not make an effect look larger than it is.
+    /// What the hidden physics costs a fit that does without: Δχ², of two effects the smaller one's. A refit
+    /// that ended in a false minimum does not make an effect look larger than it is.
     pub fn size(&self) -> f64 {
         let IndependentFits { refitted, truth, without, .. } = &self.fits;
         without.iter().copied().fold(*refitted, f64::min) - truth

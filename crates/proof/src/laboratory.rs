@@ -10,7 +10,8 @@ use std::collections::BTreeMap;
 
 /// Alternatives below this probability are not fitted.
 const LISTED: f64 = 0.01;
-/// Objective above that of the fit about the truth at which a fit of the same names has not found its minimum.
+/// Objective above that of the fit about the truth at which a fit of the same names has not found its
+/// minimum.
 const SHORT: f64 = 2.0;
 
 impl Judgeable for Truth {
@@ -58,8 +59,8 @@ impl Judgeable for Truth {
     }
 }
 
-/// Objectives of the names that were given instead of the hidden one, each fitted alone from where the answer left it, and from the
-/// true quantities.
+/// Objectives of the names that were given instead of the hidden one, each fitted alone from where the answer
+/// left it, and from the true quantities.
 pub(crate) fn others(truth: &Truth, answer: &Answer, repaired: f64, judge: &Judge) -> BTreeMap<Name, f64> {
     let mut all: BTreeMap<Name, f64> = BTreeMap::new();
     let mut fit = |effect: &Effect, known: f64| {
@@ -91,7 +92,8 @@ impl Judged {
         self.hidden().contains(name) || self.fits.others.get(name).is_some_and(as_good)
     }
 
-    /// Whether all that was hidden was found, under its names or by a fit that is as good with as many effects.
+    /// Whether all that was hidden was found, under its names or by a fit that is as good with as many
+    /// effects.
     pub(crate) fn all_found(&self) -> bool {
         let (hidden, found) = (self.hidden(), self.found());
         let by_name = hidden.iter().all(|name| found.contains(name));
@@ -110,7 +112,8 @@ impl Judged {
         self.found().iter().any(|name| self.accepts(name))
     }
 
-    /// The stated probability of a name, the largest where it was stated for several findings; zero where it was not named.
+    /// The stated probability of a name, the largest where it was stated for several findings; zero where it
+    /// was not named.
     pub(crate) fn stated(&self, name: &Name) -> f64 {
         let all = self.findings().iter().flat_map(|found| found.names());
         all.filter(|(other, _)| other == name).fold(0.0, |most, (_, p)| p.max(most))
@@ -134,12 +137,14 @@ impl Judged {
         self.answer.is_ok() && self.truth.role != Role::Outside && hidden == found
     }
 
-    /// Whether the fit with all the right names, or of a null, ended higher than the fit about the truth: a false minimum.
+    /// Whether the fit with all the right names, or of a null, ended higher than the fit about the truth: a
+    /// false minimum.
     pub(crate) fn stopped_short(&self) -> bool {
         self.names_all_and_nothing_else() && self.fits.repaired > self.fits.truth + SHORT
     }
 
-    /// What went wrong, in a phrase each; empty where nothing did. Hidden effects that do not show are not asked for.
+    /// What went wrong, in a phrase each; empty where nothing did. Hidden effects that do not show are not
+    /// asked for.
     pub fn faults(&self) -> Vec<String> {
         let Ok(answer) = &self.answer else { return vec!["no answer".to_owned()] };
         let (found, visible, named) = (answer.findings.len(), self.is_visible(), self.is_named());

@@ -1,9 +1,10 @@
 //! What the diagnosis is worth: concealed cases, sealed truths, scores with their uncertainty.
 //!
-//! A [`Plan`] draws random assemblies in the simulated laboratory, true quantities within the stated tolerances, hidden physics and a noisy hammer
-//! test. The diagnosis gets the [`Case`], fixture and recording, and nothing else; the [`Truth`] stays in
-//! [`SealedTruths`], which give it out only against the [`Answers`] to all cases, and whose SHA-256 is known before the first.
-//! Then [`Judged`] lays truth and answer side by side: the laboratory's own model is fitted about the truth ([`Reference`]), and a name
+//! A [`Plan`] draws random assemblies in the simulated laboratory, true quantities within the stated
+//! tolerances, hidden physics and a noisy hammer test. The diagnosis gets the [`Case`], fixture and
+//! recording, and nothing else; the [`Truth`] stays in [`SealedTruths`], which give it out only against the
+//! [`Answers`] to all cases, and whose SHA-256 is known before the first. Then [`Judged`] lays truth and
+//! answer side by side: the laboratory's own model is fitted about the truth ([`Reference`]), and a name
 //! counts as right if it is the truth or fits within [`AS_GOOD`] of that. [`Score`] counts.
 //!
 //! | theme | items |

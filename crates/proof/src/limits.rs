@@ -25,8 +25,8 @@ pub struct SmallestShown {
     pub parameter: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// The parameter of an effect that costs a fit without it Δχ² = [`VISIBLE`], at the best abscissa or frequency tried; infinite where
-    /// nothing shows.
+    /// The parameter of an effect that costs a fit without it Δχ² = [`VISIBLE`], at the best abscissa or
+    /// frequency tried; infinite where nothing shows.
     pub shows: f64,
     /// The same were every quantity of the fixture known exactly.
     pub shows_if_exact: f64,
@@ -66,7 +66,8 @@ struct Signature {
 }
 
 impl Limits {
-    /// The limits of a recording with coherence against the fixture that describes it, by what small effects would do.
+    /// The limits of a recording with coherence against the fixture that describes it, by what small effects
+    /// would do.
     ///
     /// `None` where the recording has no coherence, or the fixture predicts no finite FRFs.
     pub fn of(fixture: &Fixture, recorded: &FrfSet) -> Option<Self> {
@@ -122,10 +123,11 @@ impl Signature {
         }
     }
 
-    /// The strength that costs a fit without the effect [`VISIBLE`], `information` being Δχ² by its square; `None` where nothing shows.
+    /// The strength that costs a fit without the effect [`VISIBLE`], `information` being Δχ² by its square;
+    /// `None` where nothing shows.
     ///
-    /// By first order; where that is of a stronger effect than this, again at the strength itself: a damped resonance far above the band delays, which
-    /// falls with its frequency and not with the square.
+    /// By first order; where that is of a stronger effect than this, again at the strength itself: a damped
+    /// resonance far above the band delays, which falls with its frequency and not with the square.
     fn strength(
         &self,
         sensitivity: &Sensitivity<'_>,

@@ -8,8 +8,8 @@ use num_complex::Complex64;
 /// Standard deviations beyond which a quantity's departure is worth telling.
 pub(crate) const FAR_BEYOND_TOLERANCE: f64 = 4.0;
 
-/// A quantity of the believed fixture that may depart from its statement; Young's modulus and second moment of a beam
-/// count as their product.
+/// A quantity of the believed fixture that may depart from its statement; Young's modulus and second moment
+/// of a beam count as their product.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Tolerance {
     /// Position among the fixture's quantities.
@@ -49,7 +49,8 @@ impl Tolerance {
         all
     }
 
-    /// Departure of the quantity in standard deviations, zero where that is unknown; `values` are those of all quantities.
+    /// Departure of the quantity in standard deviations, zero where that is unknown; `values` are those of
+    /// all quantities.
     pub(crate) fn departure(&self, values: &[f64]) -> f64 {
         self.std.map_or(0.0, |std| (self.value(values) - self.nominal) / std)
     }

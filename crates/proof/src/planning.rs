@@ -1,8 +1,10 @@
-//! Whether plans keep what they promise: look-alikes of the simulated laboratory, the first suggestion carried out, and the diagnosis made again.
+//! Whether plans keep what they promise: look-alikes of the simulated laboratory, the first suggestion
+//! carried out, and the diagnosis made again.
 //!
-//! A case is a random assembly with one hidden effect and a hammer test of one or two FRFs, so few that names look alike. Where the diagnosis leaves the name open, what the
-//! plan suggests first is measured in the laboratory, with noise of its own, and everything is diagnosed again; the plan never sees the truth. It promised a probability with which the
-//! hidden name would then have 0.9 or more.
+//! A case is a random assembly with one hidden effect and a hammer test of one or two FRFs, so few that names
+//! look alike. Where the diagnosis leaves the name open, what the plan suggests first is measured in the
+//! laboratory, with noise of its own, and everything is diagnosed again; the plan never sees the truth. It
+//! promised a probability with which the hidden name would then have 0.9 or more.
 
 use crate::hammer_test::{drawn_hammer, recorded_lines};
 use crate::random::seed_of;
@@ -78,7 +80,8 @@ pub struct PromiseClass {
 }
 
 impl Planning {
-    /// Draws cases from `seed` until `wanted` of them have an open name, on `threads` workers; `told` hears how many have.
+    /// Draws cases from `seed` until `wanted` of them have an open name, on `threads` workers; `told` hears
+    /// how many have.
     ///
     /// # Errors
     /// See [`GenerationError`].

@@ -1,5 +1,5 @@
-//! The best fit about the truth, by the laboratory's own model: the objective that names are judged by, and the
-//! Cramér–Rao bound of the hidden parameters.
+//! The best fit about the truth, by the laboratory's own model: the objective that names are judged by, and
+//! the Cramér–Rao bound of the hidden parameters.
 
 use crate::objective::{Tolerance, objective, values};
 use jointscope_diagnosis::Observation;
@@ -17,15 +17,16 @@ pub struct Reference {
     pub objective: f64,
     /// The same at the truth itself.
     pub at_truth: f64,
-    /// Cramér–Rao bound of each hidden effect's parameters, one standard deviation; `None` where the recording does not determine one.
+    /// Cramér–Rao bound of each hidden effect's parameters, one standard deviation; `None` where the
+    /// recording does not determine one.
     pub bounds: Vec<Vec<Option<f64>>>,
 }
 
 /// Step of central differences, in standard deviations or hundredths of a parameter.
 const DIFFERENCE: f64 = 2e-3;
 
-/// The start is a few standard deviations from the optimum: undamped steps, derivatives anew only when they gain nothing any more, and
-/// little to gain is left.
+/// The start is a few standard deviations from the optimum: undamped steps, derivatives anew only when they
+/// gain nothing any more, and little to gain is left.
 const SETTINGS: Settings = Settings {
     steps: 12,
     derivatives: usize::MAX,
@@ -62,7 +63,8 @@ struct Place {
 }
 
 impl Reference {
-    /// Fits from `truth` (the fixture with its true quantities and hidden effects) under the tolerances of `believed`.
+    /// Fits from `truth` (the fixture with its true quantities and hidden effects) under the tolerances of
+    /// `believed`.
     ///
     /// `None` where the truth has no finite FRFs.
     pub fn of(believed: &Fixture, truth: &Fixture, observation: &Observation) -> Option<Self> {
@@ -162,7 +164,8 @@ impl<'a> Neighbourhood<'a> {
         objective.is_finite().then_some(Place { fixture, values, predicted, objective })
     }
 
-    /// `from` with its coordinates moved by `steps`, in units of each; `None` where that is no fixture, or predicts nothing.
+    /// `from` with its coordinates moved by `steps`, in units of each; `None` where that is no fixture, or
+    /// predicts nothing.
     fn moved(&self, from: &Place, steps: &[f64]) -> Option<Place> {
         let mut fixture = from.fixture.clone();
         let mut physics = fixture.physics().to_vec();

@@ -40,7 +40,8 @@ pub struct BrokenSeal {
 }
 
 impl<T: Filed> SealedTruths<T> {
-    /// Truths from a file that [`SealedTruths::open`] will read, checked by its hash alone; `only` names the one case that answers are for.
+    /// Truths from a file that [`SealedTruths::open`] will read, checked by its hash alone; `only` names the
+    /// one case that answers are for.
     ///
     /// # Errors
     /// [`BrokenSeal`], where the file is another than was published.
@@ -73,8 +74,8 @@ impl<T: Sealable> SealedTruths<T> {
         &self.digest
     }
 
-    /// The truths, handed out against the answers to all of their cases; `None` (and the seal broken) where answers are missing, or a file
-    /// holds no truths.
+    /// The truths, handed out against the answers to all of their cases; `None` (and the seal broken) where
+    /// answers are missing, or a file holds no truths.
     pub fn open(self, answers: &impl Given) -> Option<Vec<T>> {
         let truths = match self.truths {
             Contents::Drawn(truths) => truths,

@@ -45,8 +45,8 @@ fn dot(a: &[Complex64], b: &[Complex64]) -> f64 {
 }
 
 impl<'a> Sensitivity<'a> {
-    /// Of `at`, a fixture without effects, under the tolerances of `believed`, for the FRFs and lines of a recording whose values have the
-    /// weights 2/σ².
+    /// Of `at`, a fixture without effects, under the tolerances of `believed`, for the FRFs and lines of a
+    /// recording whose values have the weights 2/σ².
     ///
     /// `None` where the fixture has no finite FRFs.
     pub(crate) fn of(
@@ -105,10 +105,11 @@ impl<'a> Sensitivity<'a> {
         a.iter().zip(b).zip(&self.scale).map(|((a, b), scale)| (a - b) * *scale / step).collect()
     }
 
-    /// What `effect` does by unit of its strength while it is weak; `None` where it does nothing, or the fixture cannot have it.
+    /// What `effect` does by unit of its strength while it is weak; `None` where it does nothing, or the
+    /// fixture cannot have it.
     pub(crate) fn direction(&self, effect: &Effect) -> Option<Direction> {
-        // What tolerances leave may be a thousandth of what it does, and a strong effect bends by as much, while of a weak one rounding leaves
-        // no more: of two strengths in between the bend is taken out.
+        // What tolerances leave may be a thousandth of what it does, and a strong effect bends by as much,
+        // while of a weak one rounding leaves no more: of two strengths in between the bend is taken out.
         let mut weak = effect.clone();
         let mut values = self.change(&weak)?;
         for _ in 0..WEAKENED {
@@ -124,7 +125,8 @@ impl<'a> Sensitivity<'a> {
         self.imitated(values)
     }
 
-    /// The same of the effect as strong as it is, bend and all: of what is weaker than first order was taken at, and does not grow in proportion.
+    /// The same of the effect as strong as it is, bend and all: of what is weaker than first order was taken
+    /// at, and does not grow in proportion.
     pub(crate) fn direction_as_it_is(&self, effect: &Effect) -> Option<Direction> {
         self.imitated(self.change(effect)?)
     }

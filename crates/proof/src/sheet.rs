@@ -1,4 +1,5 @@
-//! Lines of scores: shares of cases and figures beside their targets, as text and as JSON, alike for every route.
+//! Lines of scores: shares of cases and figures beside their targets, as text and as JSON, alike for every
+//! route.
 
 use crate::{CaseLine, Share};
 use serde::{Serialize, Serializer};

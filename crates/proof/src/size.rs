@@ -25,8 +25,8 @@ pub struct Size {
 const RIGHT: f64 = 0.1;
 
 impl Size {
-    /// The parameters of what was hidden beside those of a finding of the same kind; `before` their names. What is zero has no relative
-    /// error, nor has an abscissa.
+    /// The parameters of what was hidden beside those of a finding of the same kind; `before` their names.
+    /// What is zero has no relative error, nor has an abscissa.
     pub(crate) fn of_each(hidden: &Effect, found: &Found, before: &str) -> Vec<Size> {
         let parameters = hidden.kind.spec().parameters.iter().enumerate();
         let size = |(index, parameter): (usize, &jointscope_fixture::ParameterSpec)| Size {

@@ -51,7 +51,8 @@ impl Share {
         format!("{} of {} ({low:.2} to {high:.2})", self.of, self.all)
     }
 
-    /// Two-sided 95 % interval by Clopper and Pearson, quantiles of the beta distribution; everything where nothing was counted.
+    /// Two-sided 95 % interval by Clopper and Pearson, quantiles of the beta distribution; everything where
+    /// nothing was counted.
     pub fn interval(self) -> [f64; 2] {
         let quantile = |successes: usize, failures: usize, at: f64| {
             Beta::new(successes as f64, failures as f64).map_or(f64::NAN, |beta| beta.inverse_cdf(at))

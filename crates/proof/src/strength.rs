@@ -12,7 +12,8 @@ pub(crate) fn strength(effect: &Effect) -> f64 {
     size.law.size(effect.value(size.parameter))
 }
 
-/// The effect with another strength. A support's dashpot goes with its spring, an interface's loss stays the share of its spring that it was.
+/// The effect with another strength. A support's dashpot goes with its spring, an interface's loss stays the
+/// share of its spring that it was.
 pub(crate) fn with_strength(effect: &Effect, wanted: f64) -> Effect {
     let size = size_of(effect.kind);
     let mut other = effect.clone();
@@ -36,8 +37,9 @@ pub(crate) fn leading_parameter(kind: EffectKind) -> usize {
     size_of(kind).parameter
 }
 
-/// What is stated of a strength: the leading parameter, of a factor its departure from one. The weakest spring in series or lowest frequency
-/// that does not show is the strongest effect that hides, so for those the figure is an upper end.
+/// What is stated of a strength: the leading parameter, of a factor its departure from one. The weakest
+/// spring in series or lowest frequency that does not show is the strongest effect that hides, so for those
+/// the figure is an upper end.
 pub(crate) fn stated(kind: EffectKind, strength: f64) -> f64 {
     match size_of(kind).law {
         SizeLaw::FromOne => strength,

@@ -4,8 +4,8 @@ use rayon::ThreadPoolBuilder;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Maps `items` on `threads` workers, each with a pool of one thread for whatever runs within; results keep the items' order.
-/// `None` where a worker died over an item.
+/// Maps `items` on `threads` workers, each with a pool of one thread for whatever runs within; results keep
+/// the items' order. `None` where a worker died over an item.
 pub(crate) fn on_workers<T: Sync, U: Send>(
     items: &[T],
     threads: usize,
@@ -15,7 +15,8 @@ pub(crate) fn on_workers<T: Sync, U: Send>(
     let results: Vec<Mutex<Option<U>>> = items.iter().map(|_| Mutex::new(None)).collect();
     let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let worker = || {
-        // Without a pool of its own a worker would lend its time to another's case, and neither could be timed.
+        // Without a pool of its own a worker would lend its time to another's case, and neither could be
+        // timed.
         let pool = ThreadPoolBuilder::new().num_threads(1).build().ok();
         while let Some(index) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|i| *i < items.len()) {
             let result = match &pool {

@@ -57,11 +57,14 @@ impl fmt::Display for FileChannel {
     }
 }
 
-/// Which channel of the files is which of the fixture, where node numbers and directions do not say so themselves.
+/// Which channel of the files is which of the fixture, where node numbers and directions do not say so
+/// themselves.
 ///
-/// Without an entry, a node number is a point's name, direction ±2 is ±y and ±6 is ±θ. An entry speaks of one node, `101:+z=1:+y`; of every node,
-/// `+z=+y`; or of the nodes whose number fits a pattern, `10*:+z=*:+y` (node 101 is point 1). An entry of one node beats a pattern, and a pattern beats
-/// an entry of all. A node that has an entry is known by its entries alone: of a triaxial sensor at node 101, `101:+z=1:+y` takes z and leaves x and y.
+/// Without an entry, a node number is a point's name, direction ±2 is ±y and ±6 is ±θ. An entry speaks of one
+/// node, `101:+z=1:+y`; of every node, `+z=+y`; or of the nodes whose number fits a pattern, `10*:+z=*:+y`
+/// (node 101 is point 1). An entry of one node beats a pattern, and a pattern beats an entry of all. A node
+/// that has an entry is known by its entries alone: of a triaxial sensor at node 101, `101:+z=1:+y` takes z
+/// and leaves x and y.
 ///
 /// ```
 /// use jointscope_recordings::ChannelMap;
@@ -94,7 +97,8 @@ pub struct MapEntry {
 /// The nodes that an entry speaks of.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Nodes {
-    /// Those whose number has these digits before and after the `*`, and at least one for it: every one where it has none.
+    /// Those whose number has these digits before and after the `*`, and at least one for it: every one where
+    /// it has none.
     Like { before: String, after: String },
     /// The one of this number.
     One(i64),
@@ -158,8 +162,9 @@ pub enum ChannelMapError {
 }
 
 impl ChannelMap {
-    /// Reads entries `node:direction=point:direction`, or `direction=direction` for all nodes: the file's directions are `x`, `y`, `z`, `rx`, `ry`, `rz`
-    /// or `0` (none stated), the fixture's `y` and `theta`, each with a sign or without (`+`).
+    /// Reads entries `node:direction=point:direction`, or `direction=direction` for all nodes: the file's
+    /// directions are `x`, `y`, `z`, `rx`, `ry`, `rz` or `0` (none stated), the fixture's `y` and `theta`,
+    /// each with a sign or without (`+`).
     ///
     /// # Errors
     /// An entry of another form, a translation for a rotation, two entries for one channel.
@@ -197,8 +202,8 @@ impl ChannelMap {
         Some((channel, entry.sign * file.sign()))
     }
 
-    /// The entries that decide on a channel of the file: of those that speak of its node, the ones that speak of the fewest nodes. More than one
-    /// contradict each other.
+    /// The entries that decide on a channel of the file: of those that speak of its node, the ones that speak
+    /// of the fewest nodes. More than one contradict each other.
     pub(crate) fn entries_of(&self, file: FileChannel) -> impl Iterator<Item = &MapEntry> {
         let of_node = move || self.entries.iter().filter(move |entry| entry.point(file.node).is_some());
         let rank = of_node().map(|entry| entry.nodes.rank()).max();

@@ -1,7 +1,8 @@
 //! Whether what a file calls a coherence says anything of noise.
 //!
-//! A coherence γ² lies between 0 and 1 and varies from line to line; analysers also export per cent, zeros where none was computed, ones where there was a single
-//! average, and values beyond one. Those say nothing, and a variance made of them would decide everything.
+//! A coherence γ² lies between 0 and 1 and varies from line to line; analysers also export per cent, zeros
+//! where none was computed, ones where there was a single average, and values beyond one. Those say nothing,
+//! and a variance made of them would decide everything.
 
 use crate::error::enumeration;
 

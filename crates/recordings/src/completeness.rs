@@ -1,7 +1,8 @@
 //! Whether functions are missing, as where a file was cut.
 //!
-//! A universal file states nowhere how many functions it holds: one that was cut between two of them is a whole file. Only what the others have tells that something is
-//! missing: a coherence, a response of one reference, a channel of one hit.
+//! A universal file states nowhere how many functions it holds: one that was cut between two of them is a
+//! whole file. Only what the others have tells that something is missing: a coherence, a response of one
+//! reference, a channel of one hit.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -49,7 +50,8 @@ pub(crate) fn of_hits(sources: &[Source]) -> Vec<String> {
         function.dataset.function == FunctionType::TimeResponse
             && function.dataset.ordinate_axis.data_type != data_type::EXCITATION_FORCE
     };
-    // Files may count their hits from the same number. The hammer may strike elsewhere each time, so responses are compared.
+    // Files may count their hits from the same number. The hammer may strike elsewhere each time, so
+    // responses are compared.
     let responses = functions(sources).filter(is_response);
     let rows = responses.map(|f| ((f.source, f.dataset.sequence_number), along_axis(f.response())));
     let says = |((_, hit), missing, others): ((&str, i64), Vec<FileChannel>, usize)| {
@@ -71,7 +73,8 @@ fn along_axis(channel: FileChannel) -> FileChannel {
     FileChannel { direction: channel.direction.saturating_abs(), ..channel }
 }
 
-/// The one row that has some of the items, but not all, that every other row has: its key, what it lacks, and how many others there are.
+/// The one row that has some of the items, but not all, that every other row has: its key, what it lacks, and
+/// how many others there are.
 fn lacking<K: Ord + Copy, T: Ord + Copy>(
     functions: impl Iterator<Item = (K, T)>,
 ) -> Option<(K, Vec<T>, usize)> {

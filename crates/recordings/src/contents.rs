@@ -1,4 +1,5 @@
-//! What files hold, told in the field's words: for those who want to know, and for refusals of files without FRFs.
+//! What files hold, told in the field's words: for those who want to know, and for refusals of files without
+//! FRFs.
 
 mod words;
 
@@ -155,7 +156,8 @@ impl Contents {
         }
     }
 
-    /// All in one phrase, for refusals: `a mesh of 441 nodes and 400 elements, 10 mode shapes (0.956 to 31.2 Hz)`.
+    /// All in one phrase, for refusals:
+    /// `a mesh of 441 nodes and 400 elements, 10 mode shapes (0.956 to 31.2 Hz)`.
     pub fn phrase(&self) -> String {
         let mut parts: Vec<String> = Vec::new();
         let mut by_type: BTreeMap<(i32, &str, &str), usize> = BTreeMap::new();

@@ -33,8 +33,9 @@ pub enum DatasetsError {
     Read(#[from] ReadError),
 }
 
-/// FRFs, each followed by its coherence where it has one, as functions of a universal file in SI units and double
-/// precision, in the set's own form. ID line 1 is `test_name` (its first 80 characters), ID line 5 the number of averages.
+/// FRFs, each followed by its coherence where it has one, as functions of a universal file in SI units and
+/// double precision, in the set's own form. ID line 1 is `test_name` (its first 80 characters), ID line 5 the
+/// number of averages.
 ///
 /// The abscissa is even where the header's columns hold the lines to a few roundings (in ASCII, to 10⁻⁸), and
 /// uneven otherwise.

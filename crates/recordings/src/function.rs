@@ -79,8 +79,8 @@ impl<'a> Function<'a> {
         }
     }
 
-    /// Decay of the exponential window that lies on force and response, 1/s; ID line 3: `exponential window 12.5 1/s`. 0 where it speaks of
-    /// something else.
+    /// Decay of the exponential window that lies on force and response, 1/s; ID line 3:
+    /// `exponential window 12.5 1/s`. 0 where it speaks of something else.
     pub(crate) fn window_decay(&self) -> Result<f64, FunctionError> {
         let line = &self.dataset.id_lines[2];
         let Some(rest) = line.to_lowercase().trim().strip_prefix("exponential window").map(str::to_owned)

@@ -1,4 +1,5 @@
-//! From files to functions between the fixture's channels: what belongs to the test, what is left out, and why.
+//! From files to functions between the fixture's channels: what belongs to the test, what is left out, and
+//! why.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -95,7 +96,8 @@ pub(crate) fn check_points(fixture: Option<&Fixture>, map: &ChannelMap) -> Resul
     }
 }
 
-/// An entry that applies to nothing is a slip, and so are two patterns for one channel; files without any channel are refused for that instead.
+/// An entry that applies to nothing is a slip, and so are two patterns for one channel; files without any
+/// channel are refused for that instead.
 pub(crate) fn check_entries_apply(
     map: &ChannelMap,
     channels: &BTreeSet<FileChannel>,
@@ -114,7 +116,8 @@ pub(crate) fn check_entries_apply(
     Ok(())
 }
 
-/// Refuses two channels of the files that an entry of many nodes makes one channel of the fixture; entries of one node each may.
+/// Refuses two channels of the files that an entry of many nodes makes one channel of the fixture; entries of
+/// one node each may.
 pub(crate) fn check_distinct<'c>(
     map: &ChannelMap,
     located: impl Iterator<Item = (FileChannel, &'c Channel)>,
@@ -141,7 +144,8 @@ pub(crate) enum Located {
     OtherDirection,
 }
 
-/// Finds the fixture's channel of a channel of the files. Without a fixture every node is a point of its number's name.
+/// Finds the fixture's channel of a channel of the files. Without a fixture every node is a point of its
+/// number's name.
 pub(crate) struct Locator<'f> {
     fixture: Option<&'f Fixture>,
     map: &'f ChannelMap,

@@ -1,7 +1,8 @@
 //! Nodes of the files' geometry in global axes and metres, and as points of a fixture along one of them.
 //!
-//! Coordinates of a dataset 15 are meant in the node's definition system, those of a 2411 in the global one; directions 1 to 3 of a
-//! node are the axes of its displacement system. Systems may stand in one another (dataset 18).
+//! Coordinates of a dataset 15 are meant in the node's definition system, those of a 2411 in the global one;
+//! directions 1 to 3 of a node are the axes of its displacement system. Systems may stand in one another
+//! (dataset 18).
 
 use std::collections::BTreeMap;
 
@@ -101,8 +102,8 @@ pub struct PlacedNode {
     pub node: i64,
     /// Where it is, in m.
     pub position: [f64; 3],
-    /// What its directions 1, 2 and 3 are: unit vectors in global axes. Where the displacement system is not in the file, or runs in circles,
-    /// nothing.
+    /// What its directions 1, 2 and 3 are: unit vectors in global axes. Where the displacement system is not
+    /// in the file, or runs in circles, nothing.
     pub directions: Option<[[f64; 3]; 3]>,
 }
 
@@ -113,7 +114,8 @@ pub struct PointAlong {
     pub node: i64,
     /// Its abscissa along the chosen axis, in m.
     pub x: f64,
-    /// How far it is off the straight line through the nodes' centre along that axis, in m: a planar model knows nothing of it.
+    /// How far it is off the straight line through the nodes' centre along that axis, in m: a planar model
+    /// knows nothing of it.
     pub off_line: f64,
 }
 

@@ -7,8 +7,8 @@ use jointscope_uff::{Abscissa, Axis, Data, Dataset58, Encoding, FunctionType};
 use crate::DatasetsError;
 use crate::datasets::{force_axis, id_lines, motion_axis, node};
 
-/// The signals of hits as time histories (function type 1) in SI units and double precision, the hit's number as sequence number. Forces
-/// come first where `with_force` asks for them. ID line 1 is `test_name`.
+/// The signals of hits as time histories (function type 1) in SI units and double precision, the hit's number
+/// as sequence number. Forces come first where `with_force` asks for them. ID line 1 is `test_name`.
 ///
 /// # Errors
 /// A point whose name is no node number.

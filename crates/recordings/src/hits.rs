@@ -18,17 +18,20 @@ use crate::{FileChannel, FunctionError, HitsError, ReadOptions, Source};
 /// The hammer hits of a test, in the fixture's terms and SI units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hits {
-    /// The hits by number, the responses of each in the order of the fixture's points (without a fixture, of the node numbers).
+    /// The hits by number, the responses of each in the order of the fixture's points (without a fixture, of
+    /// the node numbers).
     pub hits: Vec<Hit>,
     /// What a reader of the results should know of the files: one plain sentence each.
     pub notes: Vec<String>,
 }
 
-/// Reads the hammer hits of a test: time histories (function type 1) with the same sequence number are the channels of one hit.
+/// Reads the hammer hits of a test: time histories (function type 1) with the same sequence number are the
+/// channels of one hit.
 ///
-/// A channel of ordinate type 13 is the force, and its response node and direction are where and whereto the hammer struck; reference
-/// fields mean nothing. Without a `fixture` every node is a point named by its number. Where several files
-/// count their hits from the same number, each file's are hits of their own, and all are numbered anew.
+/// A channel of ordinate type 13 is the force, and its response node and direction are where and whereto the
+/// hammer struck; reference fields mean nothing. Without a `fixture` every node is a point named by its
+/// number. Where several files count their hits from the same number, each file's are hits of their own, and
+/// all are numbered anew.
 ///
 /// ```
 /// use jointscope_recordings::{ReadOptions, Source, hits_of};
@@ -52,8 +55,9 @@ pub struct Hits {
 /// ```
 ///
 /// # Errors
-/// A [`HitsError`] that names file, function and remedy: no time histories, a hit without a force or with two, channels of a hit on
-/// different instants, units or directions that are not known, nothing that belongs to the fixture.
+/// A [`HitsError`] that names file, function and remedy: no time histories, a hit without a force or with
+/// two, channels of a hit on different instants, units or directions that are not known, nothing that belongs
+/// to the fixture.
 pub fn hits_of(
     sources: &[Source],
     fixture: Option<&Fixture>,

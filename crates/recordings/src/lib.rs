@@ -1,12 +1,14 @@
 //! What a set of universal files says of a test, in the fixture's terms and SI units.
 //!
-//! The files' nodes and directions become the fixture's points, y and θ; signs of directions are folded into the values; data types and
-//! units, never a guess, decide what a function is. Several files are one test, and the order of their datasets
-//! means nothing.
+//! The files' nodes and directions become the fixture's points, y and θ; signs of directions are folded into
+//! the values; data types and units, never a guess, decide what a function is. Several files are one test,
+//! and the order of their datasets means nothing.
 //!
-//! * [`Recording`]: the FRFs of each level as accelerances in SI units, with coherence and averages where they were recorded;
+//! * [`Recording`]: the FRFs of each level as accelerances in SI units, with coherence and averages where
+//!   they were recorded;
 //! * [`hits_of`]: the hammer hits among the time histories, force and responses in SI units;
-//! * [`Recording::of_nodes`]: the same of a structure that no fixture file describes, its points the files' nodes;
+//! * [`Recording::of_nodes`]: the same of a structure that no fixture file describes, its points the files'
+//!   nodes;
 //! * [`Contents`]: what files hold, FRFs or not;
 //! * [`Geometry`]: the files' nodes in global axes and metres, as points of a fixture along one of them;
 //! * [`ReadOptions`]: what the files do not say and the analyst does, a [`ChannelMap`] and [`AssumedUnits`];
@@ -14,7 +16,8 @@
 //! * [`to_datasets`]: FRFs as functions of a universal file;
 //! * [`RecordingError`]: one plain sentence each, naming file, function and remedy.
 //!
-//! No file is opened here: the caller brings what [`jointscope_uff`] read. Variances are not made up here either.
+//! No file is opened here: the caller brings what [`jointscope_uff`] read. Variances are not made up here
+//! either.
 //!
 //! ```
 //! use jointscope_fixture::Fixture;

@@ -13,8 +13,9 @@ use crate::{ChannelMap, FileChannel, MapEntry, ReadOptions, Recording, Recording
 impl Recording {
     /// Reads the FRFs of a test whose points are the files' nodes, in whatever direction they were measured.
     ///
-    /// A node with one direction of translation is a point by its number, whichever direction that is; one with several is a point for each, such as
-    /// `101:x` and `101:z`, and rotations about x and y are `101:rx` and `101:ry`. Entries of the map name points as they like.
+    /// A node with one direction of translation is a point by its number, whichever direction that is; one
+    /// with several is a point for each, such as `101:x` and `101:z`, and rotations about x and y are
+    /// `101:rx` and `101:ry`. Entries of the map name points as they like.
     ///
     /// # Errors
     /// As [`Recording::of`].
@@ -64,7 +65,8 @@ fn entries_of_nodes(channels: &BTreeSet<FileChannel>, given: &ChannelMap) -> Vec
     entries
 }
 
-/// A body of which nothing is known but its points, each at a place of its own in the order of their names' numbers.
+/// A body of which nothing is known but its points, each at a place of its own in the order of their names'
+/// numbers.
 fn structure(names: &[String]) -> Result<Fixture, RecordingError> {
     let number = |name: &String| name.split(':').next().and_then(|n| n.parse::<i64>().ok());
     let mut names: Vec<&String> = names.iter().collect();

@@ -1,4 +1,5 @@
-//! What an FRF's ordinates are: form and factor to SI, from data types, units labels, dataset 164 and the analyst's word.
+//! What an FRF's ordinates are: form and factor to SI, from data types, units labels, dataset 164 and the
+//! analyst's word.
 
 use std::collections::BTreeSet;
 
@@ -87,7 +88,8 @@ pub(crate) enum Signal {
     Motion(FrfForm),
 }
 
-/// Signal and factor to SI of a time history; `Ok(None)` where the file says clearly that it is neither force nor motion.
+/// Signal and factor to SI of a time history; `Ok(None)` where the file says clearly that it is neither force
+/// nor motion.
 pub(crate) fn signal(
     (source, dataset): Named,
     assumed: Option<&AssumedUnits>,
@@ -252,8 +254,8 @@ impl Reading<'_> {
         form.ok_or_else(|| absent("response", &self.dataset.ordinate_axis))
     }
 
-    /// SI units in one of the file's, from three witnesses: label, unit system and the analyst. Where none of them speaks, the
-    /// format's default is SI.
+    /// SI units in one of the file's, from three witnesses: label, unit system and the analyst. Where none of
+    /// them speaks, the format's default is SI.
     fn factor(&mut self, side: &Side, label: Label) -> Result<f64, UnitsError> {
         let by_label = self.factor_by_label(side, label)?;
         let assumed = self.assumed.filter(|_| !side.is_rotational());
@@ -298,8 +300,8 @@ impl Reading<'_> {
             Label::Nothing => Ok(None),
             Label::Si => Ok(Some(1.0)),
             Label::Unit(unit) if unit.dimension == side.dimension() => Ok(Some(unit.si)),
-            // Exporters print the SI label of a translation beside rotations: data type and direction say what it is, and
-            // the label that it is SI.
+            // Exporters print the SI label of a translation beside rotations: data type and direction say
+            // what it is, and the label that it is SI.
             Label::Unit(unit) if side.is_rotational() && unit.is_si(side.dimension_of(false)) => {
                 let unit = if side.form.is_some() { "rad" } else { "N m" };
                 let what = side.what();
@@ -398,8 +400,8 @@ fn open(axis: &Axis) -> bool {
     matches!(axis.data_type, data_type::UNKNOWN | data_type::GENERAL)
 }
 
-/// Whether label and unit system part by more than a thousandth, which two roundings of one factor may: printed unit systems hold
-/// few digits.
+/// Whether label and unit system part by more than a thousandth, which two roundings of one factor may:
+/// printed unit systems hold few digits.
 fn disagree(by_label: Option<f64>, by_system: Option<f64>) -> bool {
     matches!((by_label, by_system), (Some(l), Some(s)) if (l - s).abs() > 1e-3 * s.abs())
 }

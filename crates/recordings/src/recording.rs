@@ -46,13 +46,14 @@ pub struct Recording {
 pub struct Level {
     /// The amplitude that was held; `None` for any but stepped-sine tests.
     pub held: Option<HeldAmplitude>,
-    /// Accelerances in SI units along +y and +θ, in the order of the fixture's points, with coherence and averages where
-    /// they were recorded; at 0 Hz they are what the file holds, or zero where the file holds a mobility or receptance.
+    /// Accelerances in SI units along +y and +θ, in the order of the fixture's points, with coherence and
+    /// averages where they were recorded; at 0 Hz they are what the file holds, or zero where the file holds
+    /// a mobility or receptance.
     pub frfs: FrfSet,
     /// The form in which each FRF was recorded.
     pub recorded_forms: Vec<FrfForm>,
-    /// Decay δ of the exponential window over force and responses, 1/s, as ID line 3 states it; 0 without one. The FRFs are those
-    /// at s = δ + iω.
+    /// Decay δ of the exponential window over force and responses, 1/s, as ID line 3 states it; 0 without
+    /// one. The FRFs are those at s = δ + iω.
     pub window_decay: f64,
 }
 
@@ -68,11 +69,13 @@ pub struct TimeHistories {
 impl Recording {
     /// Reads the FRFs of a test from its files.
     ///
-    /// FRFs at nodes that the fixture does not have are left out and named in the notes, as are functions that are no FRFs.
+    /// FRFs at nodes that the fixture does not have are left out and named in the notes, as are functions
+    /// that are no FRFs.
     ///
     /// # Errors
-    /// A [`RecordingError`] that names file, function and remedy: units or directions that are not known or contradict each
-    /// other, the same FRF twice at one level, functions on different spectral lines, nothing that belongs to the fixture.
+    /// A [`RecordingError`] that names file, function and remedy: units or directions that are not known or
+    /// contradict each other, the same FRF twice at one level, functions on different spectral lines, nothing
+    /// that belongs to the fixture.
     pub fn of(sources: &[Source], fixture: &Fixture, options: &ReadOptions) -> Result<Self, RecordingError> {
         let mut gathered = gather(sources, fixture, &options.map)?;
         if !gathered.has_frfs() {
@@ -270,7 +273,8 @@ fn levels(
         .collect()
 }
 
-/// What the largest value of a set and each of its FRFs must lie between, (m/s²)/N or the like of rotations: ten decades beyond the heaviest and the lightest of structures.
+/// What the largest value of a set and each of its FRFs must lie between, (m/s²)/N or the like of rotations:
+/// ten decades beyond the heaviest and the lightest of structures.
 const MAGNITUDES: [f64; 2] = [1e-30, 1e20];
 
 fn level<'a>(

@@ -120,8 +120,8 @@ const NAMES: [(&str, Unit); 47] = [
 ];
 
 impl Unit {
-    /// Reads a unit as labels spell it: products (`*`, `·`, `-` or a blank between names), quotients, powers (`^2`, `**2`,
-    /// `²` or a digit behind the name) and brackets. `None` for anything else.
+    /// Reads a unit as labels spell it: products (`*`, `·`, `-` or a blank between names), quotients, powers
+    /// (`^2`, `**2`, `²` or a digit behind the name) and brackets. `None` for anything else.
     pub(crate) fn parse(label: &str) -> Option<Unit> {
         let text = label.trim().replace("**", "^").replace('⁻', "^-").replace('²', "^2").replace('¹', "1");
         let text = text.replace("^-^", "^-");

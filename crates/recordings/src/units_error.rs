@@ -1,4 +1,5 @@
-//! What can be wrong with the units of an FRF: an unknown label, none at all, or one that contradicts the data type.
+//! What can be wrong with the units of an FRF: an unknown label, none at all, or one that contradicts the
+//! data type.
 
 /// Why the units of one FRF are not known.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -1,4 +1,5 @@
-//! The page of a check: what is odd, what the fixture weighs, its modes, what every number means, and every FRF beside the fixture's.
+//! The page of a check: what is odd, what the fixture weighs, its modes, what every number means, and every
+//! FRF beside the fixture's.
 
 mod frfs;
 mod numbers;

@@ -1,4 +1,5 @@
-//! The page of several joints side by side: in what ratio they are, who is stiffer, how sure that is, and their spectra in common plots.
+//! The page of several joints side by side: in what ratio they are, who is stiffer, how sure that is, and
+//! their spectra in common plots.
 
 mod elements;
 mod models;
@@ -18,8 +19,8 @@ use elements::{elements, name_of, typeset};
 use models::model_section;
 use spectra::{compliance_section, spectra_section};
 
-/// The page of a comparison: models over measurements, ratios, orders with probabilities, the scatter of specimens, values, and the spectra of H41, K and C
-/// (Figures 4–9).
+/// The page of a comparison: models over measurements, ratios, orders with probabilities, the scatter of
+/// specimens, values, and the spectra of H41, K and C (Figures 4–9).
 ///
 /// The same input gives the same bytes.
 pub fn comparison_report(comparison: &Comparison, context: &PageContext) -> Report {

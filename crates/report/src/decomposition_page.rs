@@ -40,8 +40,9 @@ fn tone(analysis: &Analysis) -> Tone {
     }
 }
 
-/// The page of a joint's decomposition: verdict, fixture, key figures with noise and
-/// tolerances apart, the joint from all FRFs with its laws and tests, K and C by line, the FRFs behind them, interfaces as single numbers and by line, what the tolerances do, what was left out.
+/// The page of a joint's decomposition: verdict, fixture, key figures with noise and tolerances apart, the
+/// joint from all FRFs with its laws and tests, K and C by line, the FRFs behind them, interfaces as single
+/// numbers and by line, what the tolerances do, what was left out.
 ///
 /// `fixture` is the one that `analysis` was made with. The same input gives the same bytes.
 pub fn decomposition_report(analysis: &Analysis, fixture: &Fixture, context: &PageContext) -> Report {

@@ -25,9 +25,11 @@ use crate::section::Verdict;
 use crate::tone::Tone;
 use subject::Subject;
 
-/// The page of a diagnosis: the verdict in a sentence; what was found, how sure, how much better, what to do, and the fixture with the places marked; findings with
-/// intervals, probabilities and look-alikes; with a baseline the modes then and now; the error of the model and the departures, where there are any; errors before and after, held-out lines included; δ(ω) with the law that names it; the FRFs of all
-/// models; maps of the misfit; tolerances and where they ended; the noise.
+/// The page of a diagnosis: the verdict in a sentence; what was found, how sure, how much better, what to do,
+/// and the fixture with the places marked; findings with intervals, probabilities and look-alikes; with a
+/// baseline the modes then and now; the error of the model and the departures, where there are any; errors
+/// before and after, held-out lines included; δ(ω) with the law that names it; the FRFs of all models; maps
+/// of the misfit; tolerances and where they ended; the noise.
 ///
 /// `fixture` is the one that `diagnosis` was made with. The same input gives the same bytes.
 pub fn diagnosis_report(diagnosis: &Diagnosis, fixture: &Fixture, context: &PageContext) -> Report {

@@ -1,4 +1,5 @@
-//! A side view of a fixture: bodies along x with their points, joints, supports, sensors and impacts, as inline SVG.
+//! A side view of a fixture: bodies along x with their points, joints, supports, sensors and impacts, as
+//! inline SVG.
 
 mod layout;
 mod outline;
@@ -23,7 +24,8 @@ impl From<Markup> for Drawing {
 }
 
 impl SideView<'_> {
-    /// The drawing, in the colours of the page it stands in. It scales with its width; labels that would meet are put in rows of their own.
+    /// The drawing, in the colours of the page it stands in. It scales with its width; labels that would meet
+    /// are put in rows of their own.
     pub(crate) fn draw(&self) -> Drawing {
         let of = |width, class| svg::draw(self, width, class);
         Drawing { wide: of(layout::WIDTH, "wide"), narrow: Some(of(layout::NARROW, "narrow")) }

@@ -106,7 +106,8 @@ fn by_sign(x: &[f64], y: &[f64], velocity: &[f64]) -> Vec<(&'static str, Vec<[f6
     vec![("--trace-1", of(true)), ("--trace-2", of(false))]
 }
 
-/// The laws over the range of d. One that remembers is carried along twice from end to end, so that its outermost loop is drawn.
+/// The laws over the range of d. One that remembers is carried along twice from end to end, so that its
+/// outermost loop is drawn.
 fn curve(component: &ForceState) -> Vec<[f64; 2]> {
     let low = component.motion.iter().copied().fold(0.0, f64::min);
     let high = component.motion.iter().copied().fold(0.0, f64::max);

@@ -11,8 +11,9 @@ use crate::report::Report;
 use crate::section::Section;
 use crate::table::Table;
 
-/// The page of a diagnosis from hits as one self-contained HTML file: the verdict, the laws found with their intervals, levels compared,
-/// force against motion, errors of the three models, and the hits held out. The same input gives the same bytes.
+/// The page of a diagnosis from hits as one self-contained HTML file: the verdict, the laws found with their
+/// intervals, levels compared, force against motion, errors of the three models, and the hits held out. The
+/// same input gives the same bytes.
 pub(crate) fn hits_report(
     diagnosis: &NonlinearDiagnosis,
     fixture: &Fixture,

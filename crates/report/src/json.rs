@@ -1,7 +1,7 @@
 //! Numbers and text of the plots as JSON that may stand inside a script element.
 
-/// JSON that cannot end its script: `<` occurs in strings only, where its escape means the same, and without it neither `</script>` nor `<!--` can
-/// be spelled.
+/// JSON that cannot end its script: `<` occurs in strings only, where its escape means the same, and without
+/// it neither `</script>` nor `<!--` can be spelled.
 pub(crate) fn script_safe(json: &str) -> String {
     json.replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
 }

@@ -1,8 +1,10 @@
-//! Self-contained report pages: verdict, figures of merit, tables, fixture drawings and interactive plots in one HTML file.
+//! Self-contained report pages: verdict, figures of merit, tables, fixture drawings and interactive plots in
+//! one HTML file.
 //!
-//! A page takes what a library found and a [`PageContext`]; this crate reads and writes no files, and a page shows
-//! decisions rather than taking any. The page needs no network and cannot use one: its Content-Security-Policy is `default-src 'none'`. Everything it
-//! shows is escaped, so names from fixture files may contain anything. The same input gives the same bytes.
+//! A page takes what a library found and a [`PageContext`]; this crate reads and writes no files, and a page
+//! shows decisions rather than taking any. The page needs no network and cannot use one: its
+//! Content-Security-Policy is `default-src 'none'`. Everything it shows is escaped, so names from fixture
+//! files may contain anything. The same input gives the same bytes.
 //!
 //! | page | of |
 //! |---|---|
@@ -16,19 +18,23 @@
 //! | [`summary_page`] | many cases, a row each |
 //! | [`proof_page`] | concealed cases: what the diagnosis is worth |
 //!
-//! A [`Report`] is had as one HTML file ([`Report::html`]), its tables and curves as CSV, its figures as SVG; the pages of many cases are HTML alone.
+//! A [`Report`] is had as one HTML file ([`Report::html`]), its tables and curves as CSV, its figures as SVG;
+//! the pages of many cases are HTML alone.
 //!
-//! Inside, a page is a list of sections (`section`) made of paragraphs, key figures, tables (`table`: one row per item, a column for each question asked of
-//! it), plots (`plot`) and drawings (`drawing`, `scatter`). [`format`](mod@format) prints numbers with their uncertainty.
+//! Inside, a page is a list of sections (`section`) made of paragraphs, key figures, tables (`table`: one row
+//! per item, a column for each question asked of it), plots (`plot`) and drawings (`drawing`, `scatter`).
+//! [`format`](mod@format) prints numbers with their uncertainty.
 //!
 //! ```
 //! use jointscope_report::format::quantity;
 //! assert_eq!(quantity(3.32e6, 2.0e4, "N/m"), "3.320 ± 0.020 MN/m");
 //! ```
 //!
-//! HTML and SVG are written by [maud](https://maud.lambda.xyz), which escapes every value. Plots are drawn by [uPlot](https://github.com/leeoniya/uPlot) 1.6.32
-//! (MIT, its licence is part of every page), embedded as published: 51 KB, maintained, and fast enough that panes of many thousand spectral lines zoom and
-//! move together without delay, where general plotting libraries would add megabytes to each report or load themselves from a server.
+//! HTML and SVG are written by [maud](https://maud.lambda.xyz), which escapes every value. Plots are drawn by
+//! [uPlot](https://github.com/leeoniya/uPlot) 1.6.32 (MIT, its licence is part of every page), embedded as
+//! published: 51 KB, maintained, and fast enough that panes of many thousand spectral lines zoom and move
+//! together without delay, where general plotting libraries would add megabytes to each report or load
+//! themselves from a server.
 
 mod answer_page;
 mod check_page;

@@ -11,7 +11,8 @@ const DRAWN: usize = 4;
 const ROUNDING: f64 = 1e-12;
 const NAMES: [&str; DRAWN] = ["σ₁", "σ₂", "σ₃", "σ₄"];
 
-/// The indicator of measured FRFs, and beside it that of a fixture's on the same lines; nothing of FRFs that make no matrix.
+/// The indicator of measured FRFs, and beside it that of a fixture's on the same lines; nothing of FRFs that
+/// make no matrix.
 pub(crate) fn plot(measured: &FrfSet, fixture: Option<&FrfSet>) -> Option<Plot> {
     let indicator = ModeIndicator::of(measured)?;
     let unit = if indicator.responses[0].dof.name() == "rotation" { "(rad/s^2)/(N*m)" } else { "(m/s^2)/N" };

@@ -1,4 +1,5 @@
-//! The page of a modal analysis: the chart that the poles were chosen from, the modes, and the FRFs rebuilt from them.
+//! The page of a modal analysis: the chart that the poles were chosen from, the modes, and the FRFs rebuilt
+//! from them.
 
 mod chart;
 mod frfs;
@@ -15,11 +16,12 @@ use crate::report::Report;
 use crate::section::Section;
 use crate::tone::Tone;
 
-/// The page of a modal analysis: stabilisation chart, table of modes, shapes, auto-MAC, residual terms, and rebuilt FRFs over measured
-/// ones.
+/// The page of a modal analysis: stabilisation chart, table of modes, shapes, auto-MAC, residual terms, and
+/// rebuilt FRFs over measured ones.
 ///
-/// `fixture` tells where the channels are, if there is one, `matches` what was found of its elastic modes, one sentence each, and `modelled` are its FRFs on the channels and
-/// lines in use. The same input gives the same bytes.
+/// `fixture` tells where the channels are, if there is one, `matches` what was found of its elastic modes,
+/// one sentence each, and `modelled` are its FRFs on the channels and lines in use. The same input gives the
+/// same bytes.
 pub fn modes_report(
     analysis: &ModalAnalysis,
     fixture: Option<&Fixture>,

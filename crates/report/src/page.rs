@@ -1,4 +1,5 @@
-//! The page around the sections: head with policy and style, verdict, contents, foot, and the data that the script draws.
+//! The page around the sections: head with policy and style, verdict, contents, foot, and the data that the
+//! script draws.
 
 use std::collections::BTreeSet;
 
@@ -19,8 +20,8 @@ const UPLOT_LICENSE: &str = include_str!("../assets/uplot.LICENSE.txt");
 const SCRIPT: &str = include_str!("../assets/report.js");
 const STYLE: &str = include_str!("../assets/report.css");
 
-/// No network, no foreign content: nothing is in force but these styles and scripts, told by their hashes. Attributes of style remain, for drawings
-/// are made of them; what they could load is forbidden.
+/// No network, no foreign content: nothing is in force but these styles and scripts, told by their hashes.
+/// Attributes of style remain, for drawings are made of them; what they could load is forbidden.
 fn policy<'a>(styles: impl Iterator<Item = &'a str>, scripts: &[&'a str]) -> String {
     let hash = |text: &str| format!(" 'sha256-{}'", BASE64_STANDARD.encode(Sha256::digest(text)));
     let scripts: String = scripts.iter().copied().map(hash).collect();
@@ -32,7 +33,8 @@ fn policy<'a>(styles: impl Iterator<Item = &'a str>, scripts: &[&'a str]) -> Str
     )
 }
 
-/// The styles that drawings bring with them, so that they are whole as files of their own. No text from outside holds the mark of one.
+/// The styles that drawings bring with them, so that they are whole as files of their own. No text from
+/// outside holds the mark of one.
 fn styles_of(section: &Markup) -> impl Iterator<Item = &str> {
     section.0.split("<style>").skip(1).filter_map(|rest| Some(rest.split_once("</style>")?.0))
 }
@@ -171,7 +173,8 @@ pub(crate) fn anchor(heading: &str) -> String {
     if anchor.is_empty() { "section".to_owned() } else { anchor }
 }
 
-/// A drawing with the page's variables replaced by their values by day, or by what it states itself for a variable that the page does not have.
+/// A drawing with the page's variables replaced by their values by day, or by what it states itself for a
+/// variable that the page does not have.
 pub(crate) fn in_plain_colours(svg: &str) -> String {
     const VARIABLE: &str = "var(--";
     let mut plain = String::with_capacity(svg.len());

@@ -1,4 +1,5 @@
-//! The page of a plan: the first thing to do, what every other would bring, and every FRF that could be recorded.
+//! The page of a plan: the first thing to do, what every other would bring, and every FRF that could be
+//! recorded.
 
 use jointscope_fixture::Fixture;
 use jointscope_plan::{BEYOND_DOUBT, ExpectedInterval, FrfGain, Measure, Plan, Suggestion};

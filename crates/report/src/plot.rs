@@ -34,7 +34,8 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// An evenly divided axis. `unit` is that of the values as they are passed (`N/m`); an ordinate is drawn in a prefixed one (`MN/m`) where that reads better.
+    /// An evenly divided axis. `unit` is that of the values as they are passed (`N/m`); an ordinate is drawn
+    /// in a prefixed one (`MN/m`) where that reads better.
     pub(crate) fn linear(label: impl Into<String>, unit: impl Into<String>) -> Self {
         Self { label: label.into(), unit: unit.into(), spacing: Spacing::Linear }
     }
@@ -59,8 +60,8 @@ impl Axis {
     }
 }
 
-/// What a line stands for. The role sets the colour (told apart by readers with any common colour vision, on light and dark ground), so one meaning has
-/// one colour throughout a report.
+/// What a line stands for. The role sets the colour (told apart by readers with any common colour vision, on
+/// light and dark ground), so one meaning has one colour throughout a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Role {
     /// What was measured.
@@ -217,8 +218,8 @@ const LINE_LIMIT: usize = 2_000;
 
 /// A plot of one or more series over a common abscissa.
 ///
-/// Series are drawn in the order in which they are added, bands below all others. Lengths are checked when the page is
-/// [rendered](crate::page::Page::to_html).
+/// Series are drawn in the order in which they are added, bands below all others. Lengths are checked when
+/// the page is [rendered](crate::page::Page::to_html).
 #[derive(Debug, Clone)]
 pub(crate) struct Plot {
     title: String,
@@ -239,7 +240,8 @@ pub(crate) struct Plot {
 }
 
 impl Plot {
-    /// An empty plot. Plots whose abscissae have the same label and unit share cursor and zoom unless they stand [`alone`](Self::alone).
+    /// An empty plot. Plots whose abscissae have the same label and unit share cursor and zoom unless they
+    /// stand [`alone`](Self::alone).
     pub(crate) fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
         Self {
             title: title.into(),
@@ -260,7 +262,8 @@ impl Plot {
         }
     }
 
-    /// The abscissa of the series added after it, finite and strictly ascending. May be called again for series over other lines.
+    /// The abscissa of the series added after it, finite and strictly ascending. May be called again for
+    /// series over other lines.
     pub(crate) fn over(mut self, abscissa: impl Values) -> Self {
         self.tables.push(abscissa.gaps_as_nan());
         self
@@ -281,7 +284,8 @@ impl Plot {
         self.series(Style::Points, label, role, values)
     }
 
-    /// A translucent band between two edges, such as a 95 % interval. Where either edge is missing, so is the band.
+    /// A translucent band between two edges, such as a 95 % interval. Where either edge is missing, so is the
+    /// band.
     pub(crate) fn band(
         self,
         label: impl Into<String>,
@@ -322,8 +326,8 @@ impl Plot {
         self
     }
 
-    /// A shaded part of the abscissa, such as the band over which averages are taken; left out when an end is not finite. What has no label has no entry in
-    /// the legend.
+    /// A shaded part of the abscissa, such as the band over which averages are taken; left out when an end is
+    /// not finite. What has no label has no entry in the legend.
     pub(crate) fn shaded(mut self, label: impl Into<String>, from: f64, to: f64) -> Self {
         let ends = Some((from.min(to), from.max(to))).filter(|_| from.is_finite() && to.is_finite());
         self.marks.extend(ends.map(|(from, to)| Mark::Shaded { label: label.into(), from, to }));
@@ -355,8 +359,8 @@ impl Plot {
         Self { is_strip: true, ..self }
     }
 
-    /// How many lines are said to be masked. Unless stated, that is the number of gaps of the series with most of them, which
-    /// is wrong where one curve is split into two series.
+    /// How many lines are said to be masked. Unless stated, that is the number of gaps of the series with
+    /// most of them, which is wrong where one curve is split into two series.
     pub(crate) fn masked(self, lines: usize) -> Self {
         Self { masked: Some(lines), ..self }
     }

@@ -1,4 +1,5 @@
-//! The page of the proof: what the diagnosis is worth on concealed cases, for a reader who does not believe it.
+//! The page of the proof: what the diagnosis is worth on concealed cases, for a reader who does not believe
+//! it.
 
 mod calibration;
 mod cases;
@@ -32,9 +33,10 @@ pub struct ProofResults<'a> {
     pub routes: &'a RouteScores,
 }
 
-/// The page of a proof as one self-contained HTML file: the verdict in a sentence; scores with their targets; the diagnosis beside what people do
-/// today; detection against size; which kind was taken for which; whether probabilities and intervals mean what they say; every
-/// case with what was hidden and what was found, and a way to its own page.
+/// The page of a proof as one self-contained HTML file: the verdict in a sentence; scores with their targets;
+/// the diagnosis beside what people do today; detection against size; which kind was taken for which; whether
+/// probabilities and intervals mean what they say; every case with what was hidden and what was found, and a
+/// way to its own page.
 ///
 /// The same input gives the same bytes.
 ///

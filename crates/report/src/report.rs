@@ -1,8 +1,10 @@
 //! A page and what can be taken off it: its tables and curves as CSV, its figures as SVG.
 //!
-//! Tables hold what the page shows, with as many digits: a number with its ± becomes two columns or more, units that go from row to row get a column,
-//! a minus sign and a power of ten become what programs read, what is not determined is left empty. Curves hold every line in SI units and full precision, however the page thins them.
-//! Figures are drawn as the page draws them at first, on white; they need no style sheet of a page.
+//! Tables hold what the page shows, with as many digits: a number with its ± becomes two columns or more,
+//! units that go from row to row get a column, a minus sign and a power of ten become what programs read,
+//! what is not determined is left empty. Curves hold every line in SI units and full precision, however the
+//! page thins them. Figures are drawn as the page draws them at first, on white; they need no style sheet of
+//! a page.
 
 use csv::Writer;
 use maud::Markup;
@@ -141,7 +143,8 @@ fn file_name(title: &str) -> String {
     page::anchor(&plain)
 }
 
-/// A drawing as a file of its own: colours as they are by day, no variables of a page, which few programs for drawings know.
+/// A drawing as a file of its own: colours as they are by day, no variables of a page, which few programs for
+/// drawings know.
 fn standalone(svg: &Markup) -> String {
     let text = page::in_plain_colours(&svg.0).replace(hides, "\u{fffd}");
     format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{text}\n")

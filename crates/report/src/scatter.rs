@@ -1,4 +1,5 @@
-//! Points in a plane with curves over them, as inline SVG: for signals drawn against each other, which have no ascending abscissa.
+//! Points in a plane with curves over them, as inline SVG: for signals drawn against each other, which have
+//! no ascending abscissa.
 
 use maud::{Markup, PreEscaped, html};
 

@@ -1,4 +1,5 @@
-//! A section: a heading and what stands below it, in the order in which it was added; and the verdict above all of them.
+//! A section: a heading and what stands below it, in the order in which it was added; and the verdict above
+//! all of them.
 
 use maud::{Markup, Render, html};
 
@@ -42,7 +43,8 @@ pub(crate) struct Card {
 }
 
 impl Card {
-    /// A quantity in SI with its standard deviation; see [`quantity`](crate::format::quantity) for how it is printed.
+    /// A quantity in SI with its standard deviation; see [`quantity`](crate::format::quantity) for how it is
+    /// printed.
     pub(crate) fn quantity(
         label: impl Into<String>,
         value: f64,
@@ -188,7 +190,8 @@ impl Section {
         self.plots(1, [plot])
     }
 
-    /// Plots in rows of so many `columns`, 1 to 4, where there are any; a narrow window shows fewer side by side.
+    /// Plots in rows of so many `columns`, 1 to 4, where there are any; a narrow window shows fewer side by
+    /// side.
     pub(crate) fn plots(mut self, columns: usize, plots: impl IntoIterator<Item = Plot>) -> Self {
         let plots: Vec<Plot> = plots.into_iter().collect();
         if !plots.is_empty() {

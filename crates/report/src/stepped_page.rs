@@ -13,8 +13,9 @@ use crate::section::Section;
 use crate::table::Table;
 use crate::unit::Scale;
 
-/// The page of a diagnosis from FRFs at several levels as one self-contained HTML file: the verdict, frequency and damping against the amplitude
-/// of the joint's motion, the levels' table, and every law tried. The same input gives the same bytes.
+/// The page of a diagnosis from FRFs at several levels as one self-contained HTML file: the verdict,
+/// frequency and damping against the amplitude of the joint's motion, the levels' table, and every law tried.
+/// The same input gives the same bytes.
 pub(crate) fn stepped_report(
     diagnosis: &SteppedDiagnosis,
     fixture: &Fixture,

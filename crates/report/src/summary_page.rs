@@ -10,7 +10,8 @@ use crate::table::{Cell, Table};
 use crate::tone::Tone;
 use crate::unit::Scale;
 
-/// The page of many cases as one self-contained HTML file: how many came to what, and a row a case; each leads to the page beside it, `<case>/report.html`.
+/// The page of many cases as one self-contained HTML file: how many came to what, and a row a case; each
+/// leads to the page beside it, `<case>/report.html`.
 ///
 /// # Errors
 /// None at present.

@@ -6,7 +6,8 @@ use crate::format::{NOT_DETERMINED, fixed};
 use crate::tone::Tone;
 use crate::unit::typeset;
 
-/// χ² from which on the shade of a [heat map](Table::shaded) is full: from there on it is all the same how bad it is.
+/// χ² from which on the shade of a [heat map](Table::shaded) is full: from there on it is all the same how
+/// bad it is.
 const FULL: f64 = 100.0;
 /// Strength of the full shade, %: the numbers stay readable on it.
 const STRONGEST: f64 = 70.0;

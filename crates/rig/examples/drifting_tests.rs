@@ -1,4 +1,5 @@
-//! Writes hammer tests that drift, and tests that look as if they did, into the directory given: for each case `CASE/fixture.json` and `CASE/test.uff`.
+//! Writes hammer tests that drift, and tests that look as if they did, into the directory given: for each
+//! case `CASE/fixture.json` and `CASE/test.uff`.
 
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_rig::universal_file::{Precision, to_bytes};

@@ -1,5 +1,5 @@
-//! Writes the shipped example, a simulated hammer test of a glued joint: `fixture.json`, `hammer-test.uff` and
-//! `README.md`, into the directory given, or into `fixtures/glued-joint` of the workspace.
+//! Writes the shipped example, a simulated hammer test of a glued joint: `fixture.json`, `hammer-test.uff`
+//! and `README.md`, into the directory given, or into `fixtures/glued-joint` of the workspace.
 
 use jointscope_rig::glued_joint::{GluedJoint, SEED};
 use std::error::Error;

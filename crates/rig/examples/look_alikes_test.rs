@@ -1,7 +1,8 @@
-//! Writes the shipped example of a plan, `fixture.json`, `first-test.uff` and `second-test.uff`, into the directory given, or into `fixtures/look-alikes` of the workspace.
+//! Writes the shipped example of a plan, `fixture.json`, `first-test.uff` and `second-test.uff`, into the
+//! directory given, or into `fixtures/look-alikes` of the workspace.
 //!
-//! The first test is so small that its diagnosis leaves the name open; the second holds the one FRF that the plan suggests.
-//! Whoever wants to try it should not read on: [`hidden`] gives the answer away.
+//! The first test is so small that its diagnosis leaves the name open; the second holds the one FRF that the
+//! plan suggests. Whoever wants to try it should not read on: [`hidden`] gives the answer away.
 
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_rig::universal_file::{Precision, to_bytes};

@@ -1,5 +1,5 @@
-//! Writes the shipped example of a diagnosis, `fixture.json` and `hammer-test.uff`, into the directory given, or into
-//! `fixtures/two-blocks` of the workspace.
+//! Writes the shipped example of a diagnosis, `fixture.json` and `hammer-test.uff`, into the directory given,
+//! or into `fixtures/two-blocks` of the workspace.
 //!
 //! Whoever wants to try the diagnosis should not read on: [`hidden`] gives the answer away.
 

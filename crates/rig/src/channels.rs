@@ -103,7 +103,8 @@ struct Circuit {
     reference: usize,
     gain: f64,
     delay: f64,
-    /// Corners of high-passes (rad/s), and natural frequencies (rad/s) and damping ratios of resonating sensors, each with the power by which it enters.
+    /// Corners of high-passes (rad/s), and natural frequencies (rad/s) and damping ratios of resonating
+    /// sensors, each with the power by which it enters.
     corners: Vec<(f64, i32)>,
     resonances: Vec<([f64; 2], i32)>,
     sensor: Option<Sensor>,

@@ -1,7 +1,8 @@
 //! A hammer test of two steel blocks joined by a steel strip that is glued between them.
 //!
-//! The analyst believes in a massless beam held firmly at both ends ([`FIXTURE`]). The structure has a strip with
-//! mass, shear and rotary inertia, and a layer of epoxy at each end that yields in translation and rotation.
+//! The analyst believes in a massless beam held firmly at both ends ([`FIXTURE`]). The structure has a strip
+//! with mass, shear and rotary inertia, and a layer of epoxy at each end that yields in translation and
+//! rotation.
 
 use crate::physical::add_viscous;
 use crate::tolerance::drawn_within_tolerance;

@@ -13,7 +13,8 @@ use serde::{Deserialize, Serialize};
 pub struct HammerSetup {
     /// Hits averaged for an FRF, at least 2.
     pub averages: u32,
-    /// Noise of the response channel: white in acceleration, relative to the rms of the acceleration over the lines.
+    /// Noise of the response channel: white in acceleration, relative to the rms of the acceleration over the
+    /// lines.
     pub noise_response: f64,
     /// Noise of the force channel: white, relative to the rms of the force over the lines.
     pub noise_force: f64,
@@ -21,8 +22,8 @@ pub struct HammerSetup {
     pub corner: f64,
     /// Standard deviation of the hits' strength, relative.
     pub spread: f64,
-    /// Whether all responses to a reference are recorded in the same hits, so that they share the noise of the
-    /// force; otherwise every FRF has hits of its own (a roving hammer or sensor).
+    /// Whether all responses to a reference are recorded in the same hits, so that they share the noise of
+    /// the force; otherwise every FRF has hits of its own (a roving hammer or sensor).
     pub common_hits: bool,
     /// Seed of strengths and noise; in files a text, for it has more digits than their numbers.
     #[serde(with = "as_text")]
@@ -46,9 +47,9 @@ mod as_text {
 const NOISE_OF_FORCE: f64 = 0.1;
 
 impl HammerSetup {
-    /// A hammer test as those of the concealed cases are: `noise` on the responses and a tenth of it on the force, each relative to the channel's
-    /// rms, white over the lines; blows whose force has fallen to about 70 % at `highest_hz` and whose strength scatters by a quarter; hits of its own for
-    /// every FRF.
+    /// A hammer test as those of the concealed cases are: `noise` on the responses and a tenth of it on the
+    /// force, each relative to the channel's rms, white over the lines; blows whose force has fallen to about
+    /// 70 % at `highest_hz` and whose strength scatters by a quarter; hits of its own for every FRF.
     pub fn ordinary(noise: f64, averages: u32, highest_hz: f64, seed: u64) -> Self {
         HammerSetup {
             averages,
@@ -191,11 +192,12 @@ fn rms(squares: impl ExactSizeIterator<Item = f64>) -> f64 {
     (squares.sum::<f64>() / count).sqrt()
 }
 
-/// Variance E|ε|² of the complex values of FRF `index`, from coherence and averages: (1 − γ²)/((n − 1)γ²)·|H|²,
-/// averaged over `2·half_width + 1` neighbouring lines; `None` where coherence or averages are missing.
+/// Variance E|ε|² of the complex values of FRF `index`, from coherence and averages: (1 − γ²)/((n −
+/// 1)γ²)·|H|², averaged over `2·half_width + 1` neighbouring lines; `None` where coherence or averages are
+/// missing.
 ///
-/// Line by line the estimate has few degrees of freedom, and weights drawn from it would favour the lines whose
-/// noise happens to look small.
+/// Line by line the estimate has few degrees of freedom, and weights drawn from it would favour the lines
+/// whose noise happens to look small.
 pub fn smoothed_variance(set: &FrfSet, index: usize, half_width: usize) -> Option<Vec<f64>> {
     let (coherence, averages) = (set.coherence(index)?, set.averages(index)?);
     if averages < 2 {

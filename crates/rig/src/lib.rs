@@ -1,8 +1,9 @@
 //! A simulated vibration laboratory: recordings of assemblies whose hidden physics is known.
 //!
-//! Whoever judges a diagnosis needs recordings of which the truth is known, made by a route of its own. This crate builds the
-//! *physical* structure (masses, meshed beams, springs, dashpots, extra coordinates), solves it whole at every
-//! spectral line and measures it with a noisy hammer. It shares no code with the crates that identify and diagnose.
+//! Whoever judges a diagnosis needs recordings of which the truth is known, made by a route of its own. This
+//! crate builds the *physical* structure (masses, meshed beams, springs, dashpots, extra coordinates), solves
+//! it whole at every spectral line and measures it with a noisy hammer. It shares no code with the crates
+//! that identify and diagnose.
 //!
 //! | theme | items |
 //! |---|---|

@@ -1,8 +1,9 @@
 //! A structure that is a little wrong in every mode: what no fixture describes, and every real structure has.
 //!
-//! The structure is written on its undamped modes, M = I and K = diag ω²; coordinates without mass follow the others statically, K_mm⁻¹K_mi, and
-//! keep what they do beyond that. This changes nothing: damping and laws are carried over whole, VᵀCV. Then every natural frequency,
-//! damping ratio and shape gets an error of its own.
+//! The structure is written on its undamped modes, M = I and K = diag ω²; coordinates without mass follow the
+//! others statically, K_mm⁻¹K_mi, and keep what they do beyond that. This changes nothing: damping and laws
+//! are carried over whole, VᵀCV. Then every natural frequency, damping ratio and shape gets an error of its
+//! own.
 
 use crate::physical::RIGID;
 use crate::random::normal;
@@ -31,7 +32,8 @@ pub struct ModalErrors {
     pub frequency: Vec<f64>,
     /// Of damping ratios, relative.
     pub damping: Vec<f64>,
-    /// Of shapes, mode by mode, at the fixture's points in their order, relative to the root mean square over these.
+    /// Of shapes, mode by mode, at the fixture's points in their order, relative to the root mean square over
+    /// these.
     pub shape: Vec<Vec<f64>>,
 }
 
@@ -56,7 +58,8 @@ impl ModalErrors {
     /// Noise-free accelerances of the assembly that `fixture` describes with these errors in its modes.
     ///
     /// # Errors
-    /// As [`crate::frfs`]; [`StructureError::Modes`] where a structure has no undamped modes, such as one with a negative mass.
+    /// As [`crate::frfs`]; [`StructureError::Modes`] where a structure has no undamped modes, such as one
+    /// with a negative mass.
     pub fn frfs(
         &self,
         fixture: &Fixture,

@@ -8,8 +8,8 @@ use jointscope_spectra::FrfPair;
 use rand::Rng;
 use std::f64::consts::TAU;
 
-/// A random effect of `kind` somewhere on `fixture`, of a size that such physics has; `None` where the fixture
-/// has no place for it. Effects of the measuring chain fall on channels among `recorded`.
+/// A random effect of `kind` somewhere on `fixture`, of a size that such physics has; `None` where the
+/// fixture has no place for it. Effects of the measuring chain fall on channels among `recorded`.
 ///
 /// Whether the effect shows in a recording is for the caller to judge.
 ///
@@ -48,7 +48,8 @@ pub fn random_effect(
     })
 }
 
-/// A random rotational spring and dashpot that hold a block to ground, as stiff as turn it alone at 5 to 50 Hz; `None` where no body turns.
+/// A random rotational spring and dashpot that hold a block to ground, as stiff as turn it alone at 5 to
+/// 50 Hz; `None` where no body turns.
 pub fn random_rotational_support(rng: &mut impl Rng, fixture: &Fixture) -> Option<Effect> {
     let inertia = |body: &Body| match &body.kind {
         BodyKind::Rigid(rigid) if rigid.rotates => Some((body.name.clone(), rigid.inertia?.value)),
@@ -292,8 +293,8 @@ impl Scene<'_> {
         Some(Effect::new(kind, place, None, &values))
     }
 
-    /// A displacement of 2 to 9 mm, inwards where the point is near the end of a deformable body; `None` on a storey,
-    /// where it makes no difference.
+    /// A displacement of 2 to 9 mm, inwards where the point is near the end of a deformable body; `None` on a
+    /// storey, where it makes no difference.
     fn offset(&self, rng: &mut impl Rng, point: &str) -> Option<f64> {
         let point = self.fixture.point(point)?;
         let dx = sign(rng) * log_uniform(rng, 0.002, 0.009);
@@ -307,8 +308,8 @@ impl Scene<'_> {
     }
 }
 
-/// First and last abscissa (m) of a body, that of the uniform bar with its mass and inertia for a block, and its
-/// mass (kg).
+/// First and last abscissa (m) of a body, that of the uniform bar with its mass and inertia for a block, and
+/// its mass (kg).
 pub fn extent(body: &Body) -> (f64, f64, f64) {
     match &body.kind {
         BodyKind::Beam(beam) => {

@@ -1,4 +1,5 @@
-//! Stepped sines on a structure one of whose joints depends on amplitude: FRFs at levels of held force or held response.
+//! Stepped sines on a structure one of whose joints depends on amplitude: FRFs at levels of held force or
+//! held response.
 
 use crate::effects::linear_part;
 use crate::random::normal_pair;
@@ -20,8 +21,9 @@ pub enum Control {
     Response,
 }
 
-/// A stepped-sine test. The steady motion is a Fourier series in the joint's relative motion alone, which bears the only force that is not linear;
-/// it is found by Newton's method, the force taken from its course over a settled period.
+/// A stepped-sine test. The steady motion is a Fourier series in the joint's relative motion alone, which
+/// bears the only force that is not linear; it is found by Newton's method, the force taken from its course
+/// over a settled period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SteppedSines {
     /// What is held.
@@ -42,11 +44,12 @@ const SETTLED: f64 = 1e-10;
 const STATIC: f64 = 1e-3;
 
 impl SteppedSines {
-    /// The FRFs of `pairs`, which share a reference, at each of the `levels` (N or m/s²): first harmonic of the acceleration over the force. Lines are
-    /// stepped upwards, each from the motion of the last.
+    /// The FRFs of `pairs`, which share a reference, at each of the `levels` (N or m/s²): first harmonic of
+    /// the acceleration over the force. Lines are stepped upwards, each from the motion of the last.
     ///
     /// # Errors
-    /// A fixture that cannot be built, more than one effect that depends on amplitude, or a line on which no steady motion is found.
+    /// A fixture that cannot be built, more than one effect that depends on amplitude, or a line on which no
+    /// steady motion is found.
     pub fn record(
         &self,
         fixture: &Fixture,
@@ -163,7 +166,8 @@ impl Shaken {
         Ok(Compliances { own, across, responses: responses.collect() })
     }
 
-    /// The exciting force's first harmonic and that of the joint's, once d has settled; d's harmonics are written over `motion`.
+    /// The exciting force's first harmonic and that of the joint's, once d has settled; d's harmonics are
+    /// written over `motion`.
     fn settled(
         &self,
         at: &Compliances,
@@ -293,7 +297,8 @@ mod tests {
         Fixture::from_json(&file).unwrap()
     }
 
-    /// First harmonic of the acceleration at 4 over a force of `force` N at 4, by integrating the equations of motion until they are steady.
+    /// First harmonic of the acceleration at 4 over a force of `force` N at 4, by integrating the equations
+    /// of motion until they are steady.
     fn integrated(fixture: &Fixture, force: f64, hz: f64) -> Complex64 {
         let channel = Channel::transverse("4");
         let (equations, readings) = build(fixture, &channel, std::slice::from_ref(&channel)).unwrap();
@@ -301,7 +306,8 @@ mod tests {
         let step = 1.0 / hz / steps as f64;
         let mut state = equations.rest();
         let mut work = std::array::from_fn(|_| equations.rest());
-        // A force from rest leaves a free structure drifting: it begins at its extreme, whose impulse is none over a period.
+        // A force from rest leaves a free structure drifting: it begins at its extreme, whose impulse is none
+        // over a period.
         let push = |t: f64| force * (TAU * hz * t).cos();
         let mut sum = Complex64::ZERO;
         let mut acceleration = vec![0.0; readings[0].len()];

@@ -20,9 +20,11 @@ pub struct StrikeTest {
     pub samples: usize,
     /// Steps of the integration within a sample.
     pub steps: usize,
-    /// Length of the blow at half of its peak, s. It rises and falls as a Gaussian: records are samples without a filter, and whatever of a blow lies above
-    /// half of the sampling rate would be folded into force and responses differently. Of a Gaussian of 0.5 ms a tenth is left at 1.6 kHz, where
-    /// the band in use ends, and 1e-9 at the 4.8 kHz that 6.4 kHz fold onto it; a sin² of that length has 2e-3 there, more than a hundredth of what it has at 1.6 kHz.
+    /// Length of the blow at half of its peak, s. It rises and falls as a Gaussian: records are samples
+    /// without a filter, and whatever of a blow lies above half of the sampling rate would be folded into
+    /// force and responses differently. Of a Gaussian of 0.5 ms a tenth is left at 1.6 kHz, where the band in
+    /// use ends, and 1e-9 at the 4.8 kHz that 6.4 kHz fold onto it; a sin² of that length has 2e-3 there,
+    /// more than a hundredth of what it has at 1.6 kHz.
     pub pulse: f64,
     /// Peak forces, N; each hit's varies by some per cent.
     pub levels: Vec<f64>,
@@ -55,7 +57,8 @@ pub(crate) struct Equations {
 }
 
 impl StrikeTest {
-    /// Strikes the structure of `fixture`, its effects included, at each of `struck` and records accelerations at `read`.
+    /// Strikes the structure of `fixture`, its effects included, at each of `struck` and records
+    /// accelerations at `read`.
     ///
     /// # Errors
     /// A fixture that cannot be built, points that it does not have.
@@ -132,7 +135,8 @@ impl StrikeTest {
     }
 }
 
-/// Largest relative motion of a joint's component when the structure without its amplitude-dependent effects is struck at `struck`, m or rad.
+/// Largest relative motion of a joint's component when the structure without its amplitude-dependent effects
+/// is struck at `struck`, m or rad.
 ///
 /// # Errors
 /// As [`StrikeTest::record`].
@@ -159,8 +163,8 @@ pub fn reach(
     Ok(most)
 }
 
-/// A random amplitude-dependent effect on a joint's component that is driven to `reach` and has stiffness `stiffness` there: strong enough to
-/// matter at that motion, exercised by it.
+/// A random amplitude-dependent effect on a joint's component that is driven to `reach` and has stiffness
+/// `stiffness` there: strong enough to matter at that motion, exercised by it.
 pub fn random_law(
     rng: &mut impl Rng,
     kind: EffectKind,

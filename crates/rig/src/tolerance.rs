@@ -9,8 +9,8 @@ use rand::Rng;
 const DRAWS: usize = 50;
 
 /// A fixture of which every quantity is drawn from the normal distribution that `fixture` states for it, its
-/// default where none is stated; what is unknown and what is zero stays as it is. No quantity changes its sign, and no damping
-/// falls below three tenths of what was stated.
+/// default where none is stated; what is unknown and what is zero stays as it is. No quantity changes its
+/// sign, and no damping falls below three tenths of what was stated.
 ///
 /// # Errors
 /// [`StructureError::Fixture`] where no draw gives a possible fixture.

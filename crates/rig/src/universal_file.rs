@@ -16,7 +16,8 @@ pub enum FileError {
     Write(#[from] WriteError),
 }
 
-/// The FRFs, each followed by its coherence where it has one, as 58b datasets of the given precision; `title` is the first ID line.
+/// The FRFs, each followed by its coherence where it has one, as 58b datasets of the given precision; `title`
+/// is the first ID line.
 ///
 /// # Errors
 /// A point that is no node number, values that the format cannot hold.

@@ -1,6 +1,7 @@
 //! Fixture files, as text: who reads fixtures stands above this crate.
 
-/// Two equal rigid blocks, points 1 and 2 on the one, 3 and 4 on the other, and a steel strip of 65 mm from 2 to 3.
+/// Two equal rigid blocks, points 1 and 2 on the one, 3 and 4 on the other, and a steel strip of 65 mm from 2
+/// to 3.
 pub const TWO_BLOCKS: &str = r#"{
   "name": "two blocks and a beam",
   "bodies": {
@@ -15,7 +16,8 @@ pub const TWO_BLOCKS: &str = r#"{
   "damping": { "loss_factor": 0.006 }
 }"#;
 
-/// Two storeys that do not rotate, a point on each and a column between them: few quantities, few places, quick searches.
+/// Two storeys that do not rotate, a point on each and a column between them: few quantities, few places,
+/// quick searches.
 pub const TWO_STOREYS: &str = r#"{
   "name": "two storeys",
   "bodies": {

@@ -1,6 +1,8 @@
-//! What tests of several crates are made of: fixture files, FRFs by their points, and noise that is the same every time.
+//! What tests of several crates are made of: fixture files, FRFs by their points, and noise that is the same
+//! every time.
 //!
-//! Nothing but tests stands on this crate, and it knows of no mechanics: what it hands out shares nothing with what is tested.
+//! Nothing but tests stands on this crate, and it knows of no mechanics: what it hands out shares nothing
+//! with what is tested.
 //!
 //! ```
 //! use jointscope_samples::{ACROSS, Noise, transverse};

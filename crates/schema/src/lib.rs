@@ -1,10 +1,14 @@
 //! The JSON Schema of fixture files.
 //!
-//! [`fixture_schema`] describes what [`Fixture::from_json`](jointscope_fixture::Fixture::from_json) takes: keys, units, default deviations, ranges. Editors complete and
-//! check with it. What ties one entry to another (names that must exist, a joint's points in order, a beam's points between its ends) no schema can say: the reader does.
+//! [`fixture_schema`] describes what [`Fixture::from_json`](jointscope_fixture::Fixture::from_json) takes:
+//! keys, units, default deviations, ranges. Editors complete and check with it. What ties one entry to
+//! another (names that must exist, a joint's points in order, a beam's points between its ends) no schema can
+//! say: the reader does.
 //!
-//! The reader is written by hand for the sake of its messages, so the types here (`file`) are a description and not what reads. Tests hold the two together: whatever
-//! key is taken out of a fixture or put into it, schema and reader agree on whether it may be. Effects (`effects`) are read off the table that the reader uses itself.
+//! The reader is written by hand for the sake of its messages, so the types here (`file`) are a description
+//! and not what reads. Tests hold the two together: whatever key is taken out of a fixture or put into it,
+//! schema and reader agree on whether it may be. Effects (`effects`) are read off the table that the reader
+//! uses itself.
 //!
 //! ```
 //! let schema = jointscope_schema::fixture_schema();

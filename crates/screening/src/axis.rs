@@ -12,8 +12,8 @@ use std::f64::consts::TAU;
 /// What lies between units of frequency that are taken for each other: kHz, rad/s, and cycles a minute.
 const BETWEEN: [f64; 3] = [1000.0, TAU, 60.0];
 
-/// The factor by which the frequencies of all lines are too large: FRFs are nothing like the fixture's at these frequencies, `modelled`, and like them at those over the
-/// factor.
+/// The factor by which the frequencies of all lines are too large: FRFs are nothing like the fixture's at
+/// these frequencies, `modelled`, and like them at those over the factor.
 pub(crate) fn off_axis(frfs: &FrfSet, modelled: &[Complex64], fixture: &Fixture) -> Option<f64> {
     let apart = |modelled: &[Complex64]| median(ratios_apart(frfs.all_values(), modelled));
     if apart(modelled)? < UNLIKE_FIXTURE {

@@ -1,7 +1,8 @@
 //! Which way the phase turns.
 //!
-//! With e^{+iωt} the phase of an FRF falls through each resonance; it rises through antiresonances only, where the FRF is small. So Σ Im(H_{k+1} H̄_k), in which resonances
-//! weigh most, is negative, and positive for conjugates.
+//! With e^{+iωt} the phase of an FRF falls through each resonance; it rises through antiresonances only,
+//! where the FRF is small. So Σ Im(H_{k+1} H̄_k), in which resonances weigh most, is negative, and positive
+//! for conjugates.
 
 use crate::settings::conjugates::{LEAST_TURN, RISING_SHARE};
 use jointscope_spectra::FrfSet;

@@ -12,7 +12,8 @@ fn distance(recorded: &[Complex64], modelled: &[Complex64]) -> f64 {
     median(apart.collect()).unwrap_or(f64::INFINITY)
 }
 
-/// Pairs of FRFs, by place, each of which is like what the fixture makes of the other one, and neither like its own.
+/// Pairs of FRFs, by place, each of which is like what the fixture makes of the other one, and neither like
+/// its own.
 pub(crate) fn exchanged(frfs: &FrfSet, modelled: &[Complex64]) -> Vec<(usize, usize)> {
     let (count, lines) = (frfs.pairs().len(), frfs.lines().len());
     if lines < FEWEST_LINES {
@@ -42,8 +43,9 @@ pub(crate) fn exchanged(frfs: &FrfSet, modelled: &[Complex64]) -> Vec<(usize, us
     found
 }
 
-/// The two points whose channels, all responses or all references of them, have each other's place, with the labels that are right: where some of `exchanged` say so, and all FRFs of both, of
-/// which some may have no partner among the others, are like what `model` makes of these labels.
+/// The two points whose channels, all responses or all references of them, have each other's place, with the
+/// labels that are right: where some of `exchanged` say so, and all FRFs of both, of which some may have no
+/// partner among the others, are like what `model` makes of these labels.
 pub(crate) fn swapped(
     frfs: &FrfSet,
     modelled: &[Complex64],

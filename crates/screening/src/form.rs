@@ -1,13 +1,15 @@
 //! Whether FRFs are of the form that their file says.
 //!
-//! A receptance read as an accelerance is 1/ω² of it: ln of recorded over modelled falls along ln ω with a slope of −2, whatever resonances do to single lines.
+//! A receptance read as an accelerance is 1/ω² of it: ln of recorded over modelled falls along ln ω with a
+//! slope of −2, whatever resonances do to single lines.
 
 use crate::levels::median;
 use crate::settings::form::{BAND_PARTS, LEVEL_TOLERANCE, LINES_PER_PART, SLOPE_TOLERANCE};
 use jointscope_spectra::{FrfForm, FrfSet};
 use num_complex::Complex64;
 
-/// The form that the FRFs are of, where that is plainly another one than accelerance; `modelled` are the fixture's accelerances.
+/// The form that the FRFs are of, where that is plainly another one than accelerance; `modelled` are the
+/// fixture's accelerances.
 pub(crate) fn other_form(frfs: &FrfSet, modelled: &[Complex64]) -> Option<FrfForm> {
     let count = frfs.lines().len();
     let omegas: Vec<f64> = frfs.lines().omegas().collect();

@@ -14,7 +14,8 @@ pub(crate) fn ratios_apart(recorded: &[Complex64], modelled: &[Complex64]) -> Ve
     apart.filter(|apart| apart.is_finite()).collect()
 }
 
-/// Whether a reading that leaves `apart` is better than one that leaves `other` by more than what the fixture leaves out.
+/// Whether a reading that leaves `apart` is better than one that leaves `other` by more than what the fixture
+/// leaves out.
 pub(crate) fn better(apart: f64, other: f64) -> bool {
     apart.max(CALIBRATION) < BETTER_SHARE * other
 }

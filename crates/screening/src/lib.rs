@@ -1,20 +1,28 @@
 //! What is odd in recorded FRFs before any physics is asked for.
 //!
-//! Slips of a test's files look like physics: an FRF under another one's label like a resonator and a missing mass, a dead one like anything. They are told here by
-//! what no physics does, put right where it is plain what was meant, left out otherwise, and always said.
+//! Slips of a test's files look like physics: an FRF under another one's label like a resonator and a missing
+//! mass, a dead one like anything. They are told here by what no physics does, put right where it is plain
+//! what was meant, left out otherwise, and always said.
 //!
 //! 1. [dead](Oddity::Dead): no signal on any line. Left out.
-//! 2. [another axis](Oddity::Axis): FRFs are nothing like the fixture's, and like them at frequencies over 1000, 2π or 60. Taken there.
-//! 3. [another form](Oddity::Form): the levels fall behind the fixture's as frequency to the power −1 or −2, whatever the resonances do. Taken as mobility or
-//!    receptance.
-//! 4. [another unit](Oddity::Unit): all levels are off by what lies between two units. Taken in the other one.
-//! 5. [conjugated](Oddity::Conjugated): the phase rises through resonances, so the file's time dependence is e^{−iωt}. Conjugated.
-//! 6. [exchanged](Oddity::Exchanged): two FRFs are each like the fixture's other one, and neither like its own. Exchanged.
-//! 7. [unexcited](Oddity::Unexcited): no coherence over the upper part of the band. In all FRFs of a reference, left out there; in those of a sensor only said.
+//! 2. [another axis](Oddity::Axis): FRFs are nothing like the fixture's, and like them at frequencies over
+//!    1000, 2π or 60. Taken there.
+//! 3. [another form](Oddity::Form): the levels fall behind the fixture's as frequency to the power −1 or −2,
+//!    whatever the resonances do. Taken as mobility or receptance.
+//! 4. [another unit](Oddity::Unit): all levels are off by what lies between two units. Taken in the other
+//!    one.
+//! 5. [conjugated](Oddity::Conjugated): the phase rises through resonances, so the file's time dependence is
+//!    e^{−iωt}. Conjugated.
+//! 6. [exchanged](Oddity::Exchanged): two FRFs are each like the fixture's other one, and neither like its
+//!    own. Exchanged.
+//! 7. [unexcited](Oddity::Unexcited): no coherence over the upper part of the band. In all FRFs of a
+//!    reference, left out there; in those of a sensor only said.
 //!
-//! Two things are told of what cannot be put right: [masses and inertias](Oddity::Masses) of the fixture in another unit, and FRFs of which [a part](Steps) was changed.
+//! Two things are told of what cannot be put right: [masses and inertias](Oddity::Masses) of the fixture in
+//! another unit, and FRFs of which [a part](Steps) was changed.
 //!
-//! The fixture is compared as it stands. What it leaves out moves resonances; levels and phases between them hardly change, so all of it goes by medians over the lines.
+//! The fixture is compared as it stands. What it leaves out moves resonances; levels and phases between them
+//! hardly change, so all of it goes by medians over the lines.
 
 mod axis;
 mod conjugated;
@@ -151,7 +159,8 @@ fn in_its_units(
     frfs
 }
 
-/// What the fixture makes of the same FRFs, as accelerances; `None` where it has no model, or the FRFs are of another form.
+/// What the fixture makes of the same FRFs, as accelerances; `None` where it has no model, or the FRFs are of
+/// another form.
 fn modelled(frfs: &FrfSet, fixture: &Fixture) -> Option<Vec<Complex64>> {
     if frfs.form() != FrfForm::Accelerance {
         return None;

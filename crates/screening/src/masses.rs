@@ -1,8 +1,10 @@
 //! Masses and inertias of a fixture in another unit than they say, told by what was recorded.
 //!
-//! Masses and inertias that are all in grams belong to one structure: no number by itself is odd. But the recording weighs it: where the fixture's FRFs are nothing like those
-//! recorded, and like them with masses, inertias or both over what lies between two units, that was meant. A recording in another unit looks alike where only mass counts, for
-//! its levels are off by the same factor; stiffness tells the two apart, since other masses move all natural frequencies and another unit of the FRFs moves none.
+//! Masses and inertias that are all in grams belong to one structure: no number by itself is odd. But the
+//! recording weighs it: where the fixture's FRFs are nothing like those recorded, and like them with masses,
+//! inertias or both over what lies between two units, that was meant. A recording in another unit looks alike
+//! where only mass counts, for its levels are off by the same factor; stiffness tells the two apart, since
+//! other masses move all natural frequencies and another unit of the FRFs moves none.
 
 use crate::levels::{better, median, ratios_apart};
 use crate::settings::masses::{MOST_BODIES, MOST_LINES, UNLIKE_FIXTURE};
@@ -46,8 +48,9 @@ struct Reading {
     inertia: f64,
 }
 
-/// What is wrong with the masses or inertias of `fixture`; `modelled` are its accelerances. `in_another_unit` is the median |ln(|H|/|Ĥ|)| that another unit of the FRFs leaves,
-/// and between which units it lies, where one does: both are said where both are like the recording.
+/// What is wrong with the masses or inertias of `fixture`; `modelled` are its accelerances. `in_another_unit`
+/// is the median |ln(|H|/|Ĥ|)| that another unit of the FRFs leaves, and between which units it lies, where
+/// one does: both are said where both are like the recording.
 pub(crate) fn slip(
     frfs: &FrfSet,
     modelled: &[Complex64],

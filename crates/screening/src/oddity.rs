@@ -4,7 +4,8 @@ use crate::Implausible;
 use jointscope_spectra::{FrfForm, FrfPair, in_sentence};
 use std::fmt;
 
-/// Something odd in a recording, and what was done about it. Shown as one plain sentence, without a full stop.
+/// Something odd in a recording, and what was done about it. Shown as one plain sentence, without a full
+/// stop.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Oddity {
     /// FRFs without a signal on any line: left out.
@@ -22,13 +23,15 @@ pub enum Oddity {
         /// The units that were taken for each other.
         between: &'static str,
     },
-    /// Masses or inertias of the fixture are in another unit, or a decimal place off: nothing was changed for it.
+    /// Masses or inertias of the fixture are in another unit, or a decimal place off: nothing was changed for
+    /// it.
     Masses(Implausible),
     /// Two FRFs that stand under each other's labels: exchanged.
     Exchanged(FrfPair, FrfPair),
     /// Two points whose channels, responses or references, have each other's place in all FRFs: exchanged.
     Swapped(String, String),
-    /// No coherence from this frequency (Hz) to the end of the band in all FRFs of a channel: `true` of a reference.
+    /// No coherence from this frequency (Hz) to the end of the band in all FRFs of a channel: `true` of a
+    /// reference.
     Unexcited {
         /// The channel's point.
         point: String,

@@ -1,7 +1,8 @@
 //! Whether the numbers of a fixture can belong to one structure.
 //!
-//! A mass in grams beside an inertia in kg·m², abscissae in mm, a modulus in GPa: each number by itself is possible, together they are of no structure, and a diagnosis would
-//! explain the slip as physics. Where a change of unit alone makes them fit, that is said.
+//! A mass in grams beside an inertia in kg·m², abscissae in mm, a modulus in GPa: each number by itself is
+//! possible, together they are of no structure, and a diagnosis would explain the slip as physics. Where a
+//! change of unit alone makes them fit, that is said.
 
 use crate::settings::plausibility::{
     DENSITY, LEAST_MODULUS, MOST_DEPTH, SECTION_AREA, SPAN, USUAL_DENSITY, USUAL_SPAN,
@@ -28,7 +29,8 @@ pub fn plausible(fixture: &Fixture) -> Result<(), Implausible> {
     judged(fixture).find_map(Result::err).map_or(Ok(()), Err)
 }
 
-/// Every number of a fixture that cannot belong to the same structure as the others, in the order of the file.
+/// Every number of a fixture that cannot belong to the same structure as the others, in the order of the
+/// file.
 pub fn implausible(fixture: &Fixture) -> Vec<Implausible> {
     judged(fixture).filter_map(Result::err).collect()
 }

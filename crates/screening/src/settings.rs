@@ -1,13 +1,14 @@
 //! Every tuned number of the screening, with the reason for it, by the question that it decides.
 //!
-//! Distances between levels are medians of |ln(|H|/|Ĥ|)| over the lines, Ĥ being the fixture's FRFs. Factors between units stand with the units (`axis.rs`, `unit.rs`,
-//! `masses.rs`).
+//! Distances between levels are medians of |ln(|H|/|Ĥ|)| over the lines, Ĥ being the fixture's FRFs. Factors
+//! between units stand with the units (`axis.rs`, `unit.rs`, `masses.rs`).
 
 /// How near levels of FRFs are.
 pub(crate) mod levels {
     /// Distance up to which FRFs are like a fixture's.
     pub(crate) const LIKE_FIXTURE: f64 = 0.2;
-    /// Share of a distance below which another reading is the better one: what a fixture leaves out takes part in both.
+    /// Share of a distance below which another reading is the better one: what a fixture leaves out takes
+    /// part in both.
     pub(crate) const BETTER_SHARE: f64 = 1.0 / 3.0;
     /// Distance below which FRFs are alike: calibration is no better.
     pub(crate) const CALIBRATION: f64 = 0.01;
@@ -25,8 +26,8 @@ pub(crate) mod steps {
     pub(crate) const LEAST_DECADES: f64 = 2.0;
     /// How far that may be from a whole number: an FRF changes a little between two lines besides.
     pub(crate) const DECADE_TOLERANCE: f64 = 0.1;
-    /// Change of an FRF to the line before and after a step, as ln of its level, up to which it is even there. A resonance or an antiresonance that lies between two lines
-    /// has its change on both sides.
+    /// Change of an FRF to the line before and after a step, as ln of its level, up to which it is even
+    /// there. A resonance or an antiresonance that lies between two lines has its change on both sides.
     pub(crate) const LEVEL_CHANGE: f64 = 0.4;
     /// Fewest steps: there and back.
     pub(crate) const FEWEST_STEPS: usize = 2;
@@ -60,7 +61,8 @@ pub(crate) mod unit {
 
 /// Masses and inertias of the fixture in another unit.
 pub(crate) mod masses {
-    /// Distance up to which FRFs are like the fixture's: what a fixture leaves out moves resonances, and levels between them by less than half.
+    /// Distance up to which FRFs are like the fixture's: what a fixture leaves out moves resonances, and
+    /// levels between them by less than half.
     pub(crate) const UNLIKE_FIXTURE: f64 = 0.35;
     /// Lines on which readings are compared: medians need no more.
     pub(crate) const MOST_LINES: usize = 200;
@@ -98,13 +100,13 @@ pub(crate) mod unexcited {
 
 /// Numbers of a fixture that cannot belong to one structure.
 pub(crate) mod plausibility {
-    /// Distances from the centre of gravity to a body's points, over its radius of gyration, that bodies have: a bar with points at its ends has √3, one with points near its
-    /// middle alone next to none.
+    /// Distances from the centre of gravity to a body's points, over its radius of gyration, that bodies
+    /// have: a bar with points at its ends has √3, one with points near its middle alone next to none.
     pub(crate) const SPAN: (f64, f64) = (0.01, 8.0);
     /// The same of a body whose numbers are in the right units.
     pub(crate) const USUAL_SPAN: (f64, f64) = (0.3, 6.0);
-    /// The mass of such a body over the cube of a bar as long as its radius of gyration asks for, kg/m³: of slender bars that is less than their density, of foam and of lead
-    /// between these.
+    /// The mass of such a body over the cube of a bar as long as its radius of gyration asks for, kg/m³: of
+    /// slender bars that is less than their density, of foam and of lead between these.
     pub(crate) const USUAL_DENSITY: (f64, f64) = (1.0, 1e5);
     /// Young's moduli below which nothing is that carries a structure, Pa.
     pub(crate) const LEAST_MODULUS: f64 = 5e5;
@@ -112,6 +114,7 @@ pub(crate) mod plausibility {
     pub(crate) const MOST_DEPTH: f64 = 10.0;
     /// Densities that no beam has, kg/m³: lighter than foam, heavier than any metal.
     pub(crate) const DENSITY: (f64, f64) = (20.0, 25e3);
-    /// A section's area over the square root of its second moment: 3.5 of a square, down to a quarter of that of a tall one or a thin tube, up to ten times that of a strip.
+    /// A section's area over the square root of its second moment: 3.5 of a square, down to a quarter of that
+    /// of a tall one or a thin tube, up to ten times that of a strip.
     pub(crate) const SECTION_AREA: (f64, f64) = (0.8, 35.0);
 }

@@ -43,15 +43,16 @@ fn start(coherence: &[f64]) -> Option<usize> {
     let windows: Vec<f64> = windows.collect();
     let none = windows.iter().rev().take_while(|value| **value < LEAST_COHERENCE).count();
     let mut first = ((windows.len() - none) * WINDOW_LINES).min(coherence.len());
-    // The first window without may begin with lines that have some, the last one with may end with lines that have none.
+    // The first window without may begin with lines that have some, the last one with may end with lines that
+    // have none.
     first += coherence[first..].iter().take_while(|gamma| **gamma >= LEAST_COHERENCE).count();
     first -= coherence[..first].iter().rev().take_while(|gamma| **gamma < LEAST_COHERENCE).count();
     let share = (coherence.len().saturating_sub(first)) as f64 / coherence.len().max(1) as f64;
     (share > LEAST_SHARE && first > 0).then_some(first)
 }
 
-/// The FRFs without the lines on which references are [unexcited](Oddity::Unexcited): left out where none is excited, without weight otherwise. A coherence of zero is one of a
-/// value that tells nothing.
+/// The FRFs without the lines on which references are [unexcited](Oddity::Unexcited): left out where none is
+/// excited, without weight otherwise. A coherence of zero is one of a value that tells nothing.
 pub(crate) fn masked(mut frfs: FrfSet, found: &[Oddity]) -> FrfSet {
     let hz = frfs.lines().hz().to_vec();
     let starts: Vec<Option<f64>> = frfs

@@ -1,4 +1,5 @@
-//! FRFs in another unit than their file says: all of them larger than the fixture's by what lies between two units.
+//! FRFs in another unit than their file says: all of them larger than the fixture's by what lies between two
+//! units.
 
 use crate::levels::{median, ratios_apart};
 use crate::settings::unit::{FACTOR_TOLERANCE, FRF_SPREAD};
@@ -20,7 +21,8 @@ pub(crate) fn left(frfs: &FrfSet, modelled: &[Complex64], factor: f64) -> Option
     median(ratios_apart(&over, modelled))
 }
 
-/// The factor by which all FRFs are off, and the units between which it lies; `modelled` are the fixture's accelerances.
+/// The factor by which all FRFs are off, and the units between which it lies; `modelled` are the fixture's
+/// accelerances.
 pub(crate) fn off_by_units(frfs: &FrfSet, modelled: &[Complex64]) -> Option<(f64, &'static str)> {
     let count = frfs.lines().len();
     let ratio = |index: usize| {

@@ -265,7 +265,8 @@ impl FrfSet {
         Ok(converted)
     }
 
-    /// The set with other values, by their place and what they were: FRF after FRF. Variances go with the square of the size, coherence does not change.
+    /// The set with other values, by their place and what they were: FRF after FRF. Variances go with the
+    /// square of the size, coherence does not change.
     pub fn with_values(mut self, value: impl Fn(usize, Complex64) -> Complex64) -> Self {
         for (at, old) in self.values.iter_mut().enumerate() {
             let new = value(at, *old);

@@ -1,4 +1,5 @@
-//! One row of the paper's tables as the program computes it: an example's FRFs from lumped model and solid, decomposed and averaged.
+//! One row of the paper's tables as the program computes it: an example's FRFs from lumped model and solid,
+//! decomposed and averaged.
 
 use crate::TablesError;
 use crate::example::Example;
@@ -80,7 +81,8 @@ impl ProgramRow {
     }
 }
 
-/// C_IN (40): the block (y2, θ2) of the proportional damping matrix, carried from the centre of gravity to the interface.
+/// C_IN (40): the block (y2, θ2) of the proportional damping matrix, carried from the centre of gravity to
+/// the interface.
 fn damping_input(example: &Example) -> Result<Elements, TablesError> {
     let fixture = &example.fixture;
     let assembly = Assembly::new(fixture, 1000.0)?;

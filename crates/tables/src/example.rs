@@ -20,8 +20,8 @@ pub struct Example {
 }
 
 impl Example {
-    /// Whether the fixture's joint has the example's own stiffness. That of a welded or glued example is its integral neighbour's: the paper's SIM
-    /// puts the measured damping ratios on it.
+    /// Whether the fixture's joint has the example's own stiffness. That of a welded or glued example is its
+    /// integral neighbour's: the paper's SIM puts the measured damping ratios on it.
     pub fn own_stiffness(&self) -> bool {
         self.layer.is_none()
     }
@@ -39,7 +39,8 @@ impl Example {
     }
 }
 
-/// How much of a fixture was inferred, and from how many printed cells: the more of the first, the less the second are a test.
+/// How much of a fixture was inferred, and from how many printed cells: the more of the first, the less the
+/// second are a test.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Inference {
     /// Numbers inferred: dimensions, masses, damping ratios, ends of the band.
@@ -88,7 +89,8 @@ pub fn examples() -> Result<Vec<Example>, TablesError> {
     let e0 = Band { from: 718.7, to: 1000.0 };
     let f01 = Band { from: 757.3, to: 1000.0 };
     let f02 = Band { from: 263.5, to: 518.7 };
-    // As the paper has it, the SIM of a welded or glued example is its integral neighbour's stiffness with the damping ratios measured on it.
+    // As the paper has it, the SIM of a welded or glued example is its integral neighbour's stiffness with
+    // the damping ratios measured on it.
     let weld = Some("E0's, K11 in the ratio of their FEM cells");
     let glue = Some("F01's, K11 in the ratio of their EXP cells");
     let none = Some("F02's, without a layer: by the EXP cells K11 is the same");

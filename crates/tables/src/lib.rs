@@ -1,8 +1,9 @@
 //! The paper's Tables 1–6, its values beside what the program makes of fixtures inferred from them.
 //!
-//! The paper prints no dimensions. Those of four integral examples were inferred from its SIM cells, so that agreement there is a fit and no
-//! prediction; [`Inference`] says how many numbers were taken from how many cells. What is a test: the cells that the inference does not
-//! reach, the finite-element cells, and what the exact relation makes of the same FRFs.
+//! The paper prints no dimensions. Those of four integral examples were inferred from its SIM cells, so that
+//! agreement there is a fit and no prediction; [`Inference`] says how many numbers were taken from how many
+//! cells. What is a test: the cells that the inference does not reach, the finite-element cells, and what the
+//! exact relation makes of the same FRFs.
 //!
 //! * [`paper`]: the printed values, with their units;
 //! * [`examples`]: fixtures with their bands and inferences;

@@ -1,4 +1,5 @@
-//! The numbers of Tables 2–6 of "Estimation of Dynamic Stiffness Matrix of Welded or Glued Joints Using a Laboratory Fixture", as printed.
+//! The numbers of Tables 2–6 of "Estimation of Dynamic Stiffness Matrix of Welded or Glued Joints Using a
+//! Laboratory Fixture", as printed.
 
 /// How the strip of an example meets its blocks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,7 +33,8 @@ pub(crate) const ELEMENTS: [&str; 4] = ["11", "12", "21", "22"];
 pub const STIFFNESS_UNITS: [(&str, f64); 4] =
     [("MN/m", 1e6), ("kN/rad", 1e3), ("kN*m/m", 1e3), ("kN*m/rad", 1e3)];
 
-/// Units of the elements of C in Tables 5 and 6. Table 6 prints kN/rad and kNm/m, which are units of stiffness.
+/// Units of the elements of C in Tables 5 and 6. Table 6 prints kN/rad and kNm/m, which are units of
+/// stiffness.
 pub const DAMPING_UNITS: [(&str, f64); 4] =
     [("N*s/m", 1.0), ("N*s/rad", 1.0), ("N*s", 1.0), ("N*m*s/rad", 1.0)];
 
@@ -143,7 +145,8 @@ impl Model {
 const ALL: &[Model] = &[Sim, Exp, Fem];
 const BOTH: &[Model] = &[Exp, Fem];
 
-/// Table 4, "model used to compare values": for each place of [`RANKS`], the models whose values were compared.
+/// Table 4, "model used to compare values": for each place of [`RANKS`], the models whose values were
+/// compared.
 #[rustfmt::skip]
 pub const MODELS_USED: [[&[&[Model]]; 4]; 3] = [
     [
@@ -156,8 +159,9 @@ pub const MODELS_USED: [[&[&[Model]]; 4]; 3] = [
     [&[ALL, &[Exp]], &[&[Exp], ALL], &[&[Exp], ALL], &[ALL, &[Exp]]],
 ];
 
-/// An element of an example in one of the places of Table 4: the smallest and the largest of the values that were compared, in the units of Tables 2 and 3;
-/// `None` where a model that is said to have been used has none.
+/// An element of an example in one of the places of Table 4: the smallest and the largest of the values that
+/// were compared, in the units of Tables 2 and 3; `None` where a model that is said to have been used has
+/// none.
 pub fn compared(group: usize, element: usize, place: usize) -> Option<[f64; 2]> {
     let example = RANKS[group][element].get(place)?;
     let row = STIFFNESS.iter().find(|row| row.example == *example)?;

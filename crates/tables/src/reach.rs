@@ -1,14 +1,19 @@
 //! Which printed rows eq (7) can give, and on which side of its poles.
 //!
-//! For two rigid blocks and a massless Euler strip eq (7) has, with x = ω², p = 2EI/(L I_A x), q = 2EI/(L I_B x), σ = (EI/L²)(c_A/I_A + c_B/I_B)/x,
+//! For two rigid blocks and a massless Euler strip eq (7) has, with x = ω², p = 2EI/(L I_A x), q = 2EI/(L I_B
+//! x), σ = (EI/L²)(c_A/I_A + c_B/I_B)/x,
 //!
-//! K11 = (12EI/L³) g, |K12| = (6EI/L²) g |1 − q|, |K21| = (6EI/L²) g |1 − p|, |K22| = (2EI/L) g (1 + 6σ), 1/g = 1 − 12σ − 3(p + q) + 3pq,
+//! K11 = (12EI/L³) g, |K12| = (6EI/L²) g |1 − q|, |K21| = (6EI/L²) g |1 − p|, |K22| = (2EI/L) g (1 + 6σ),
+//! 1/g = 1 − 12σ − 3(p + q) + 3pq,
 //!
-//! so that K11·K22/(K12·K21) − 1 = −1/(3 g (1 − p)(1 − q)) in magnitudes. 1/g has two roots in x, the poles of eq (7), and is negative between them. It is negative where p or q
-//! is one, so these places lie between the poles. Above the upper pole p and q are below one and below the lower pole both are beyond it: there the ratio is below one, and above 2/3 in the first. Between the poles it is beyond
-//! one wherever K12 and K21 have the signs that they have outside, as two equal blocks always do.
+//! so that K11·K22/(K12·K21) − 1 = −1/(3 g (1 − p)(1 − q)) in magnitudes. 1/g has two roots in x, the poles
+//! of eq (7), and is negative between them. It is negative where p or q is one, so these places lie between
+//! the poles. Above the upper pole p and q are below one and below the lower pole both are beyond it: there
+//! the ratio is below one, and above 2/3 in the first. Between the poles it is beyond one wherever K12 and
+//! K21 have the signs that they have outside, as two equal blocks always do.
 //!
-//! An average over a band without a pole is the same expression at a mean of 1/x, weighted by g, which has one sign there. So what holds for a line holds for every such average.
+//! An average over a band without a pole is the same expression at a mean of 1/x, weighted by g, which has
+//! one sign there. So what holds for a line holds for every such average.
 
 use crate::paper::{Elements, StiffnessRow};
 use jointscope_averaging::Band;
@@ -132,7 +137,8 @@ fn means(kappa: f64, r: f64) -> [f64; 3] {
 }
 
 impl Witness {
-    /// Of cells with K12 = K21 whose ratio is beyond one; the first that is found with a band clear of the poles by a tenth.
+    /// Of cells with K12 = K21 whose ratio is beyond one; the first that is found with a band clear of the
+    /// poles by a tenth.
     pub fn between_the_poles(cells: &Elements) -> Option<Self> {
         let [k11, k12, k21, k22] = *cells;
         let ratio = 1e3 * k11 * k22 / (k12 * k21);
@@ -141,7 +147,8 @@ impl Witness {
         }
         ARMS.into_iter().find_map(|r| {
             let omegas = [BAND.from, BAND.to].map(|hz| (std::f64::consts::TAU * hz).powi(2));
-            // u of the upper pole; the band's upper end lies below it, its lower end where K12 has its sign still.
+            // u of the upper pole; the band's upper end lies below it, its lower end where K12 has its sign
+            // still.
             let pole = (12.0 * r + 6.0 - ((12.0 * r + 6.0f64).powi(2) - 12.0).sqrt()) / 6.0;
             let (mut low, mut high) = (1.1 * pole * omegas[1], 0.9 * omegas[0]);
             let excess = |kappa: f64| {

@@ -16,8 +16,8 @@ pub struct Tables {
 }
 
 impl Tables {
-    /// Computes every cell that has a fixture, one example after the other; `progress` is told which is next. Without `mesh` the
-    /// finite-element cells are left out.
+    /// Computes every cell that has a fixture, one example after the other; `progress` is told which is next.
+    /// Without `mesh` the finite-element cells are left out.
     ///
     /// # Errors
     /// See [`TablesError`].
@@ -49,7 +49,8 @@ impl Tables {
         self.measured.iter().find(|measured| measured.example == example)
     }
 
-    /// Examples of a group of Table 4 in the order of an element, by a choice of cells; those without one are left out.
+    /// Examples of a group of Table 4 in the order of an element, by a choice of cells; those without one are
+    /// left out.
     pub fn rank(group: usize, element: usize, cell: impl Fn(&str) -> Option<Elements>) -> Vec<&'static str> {
         let mut known: Vec<(&'static str, f64)> =
             GROUPS[group].iter().filter_map(|name| Some((*name, cell(name)?[element]))).collect();

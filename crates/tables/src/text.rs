@@ -75,7 +75,8 @@ fn beside(found: Option<f64>, paper: Option<f64>) -> String {
     }
 }
 
-/// Table 4's other half: which models' values were compared, and whether these put the examples in the order printed.
+/// Table 4's other half: which models' values were compared, and whether these put the examples in the order
+/// printed.
 fn models_used(text: &mut String) {
     text.push_str(
         "Table 4, model used to compare values, and the span of these values in Tables 2 and 3\n\n",

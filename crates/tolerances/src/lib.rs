@@ -1,7 +1,8 @@
-//! How the uncertain quantities of a fixture move in a fit: one rule for every fit that refits a fixture within its tolerances.
+//! How the uncertain quantities of a fixture move in a fit: one rule for every fit that refits a fixture
+//! within its tolerances.
 //!
-//! A coordinate is a number of standard deviations from the stated value, or of tenths of it where nothing is known of it; its prior is a standard
-//! normal distribution, or none.
+//! A coordinate is a number of standard deviations from the stated value, or of tenths of it where nothing is
+//! known of it; its prior is a standard normal distribution, or none.
 //!
 //! ```
 //! let fixture = jointscope_fixture::Fixture::from_json(
@@ -57,7 +58,8 @@ pub fn moved(fixture: &Fixture, tolerances: &[Tolerance], coordinates: &[f64]) -
     moved
 }
 
-/// Whether a quantity ended so many standard deviations from what is stated that more than one in twenty such are no chance.
+/// Whether a quantity ended so many standard deviations from what is stated that more than one in twenty such
+/// are no chance.
 pub fn is_far(deviations: f64) -> bool {
     deviations.abs() > FAR
 }
@@ -65,8 +67,9 @@ pub fn is_far(deviations: f64) -> bool {
 /// Standard deviations beyond which a quantity is far: one in twenty is by chance.
 const FAR: f64 = 2.0;
 
-/// Relative deviation up to which a positive quantity moves by its logarithm. One that is stated to a wider deviation has the normal distribution
-/// that is stated: a logarithm of that width would make multiples of the value as probable as small parts of it.
+/// Relative deviation up to which a positive quantity moves by its logarithm. One that is stated to a wider
+/// deviation has the normal distribution that is stated: a logarithm of that width would make multiples of
+/// the value as probable as small parts of it.
 const NARROW: f64 = 0.12;
 
 /// What is known of a quantity that is a parameter of an effect.
@@ -86,7 +89,8 @@ fn parameter_of(quantity: &NamedQuantity) -> Parameter {
         _ => 1.0,
     };
     let scale = quantity.std.unwrap_or_else(free);
-    // Masses and stiffnesses trade against factors of each other: by their logarithms such a trade is a straight line.
+    // Masses and stiffnesses trade against factors of each other: by their logarithms such a trade is a
+    // straight line.
     let relative = !matches!(quantity.nature, Nature::Abscissa | Nature::Damping)
         && nominal > 0.0
         && scale <= NARROW * nominal;

@@ -1,9 +1,9 @@
 //! Prints what a universal file holds, for other programs to compare:
 //! `cargo run -p jointscope-uff --example dump -- FILE [--values OUT] [--beside] [--time REPEATS]`
 //!
-//! One line of tab-separated header fields a function on standard output; `--values` puts abscissa and ordinates of all
-//! functions into a file of little-endian doubles (complex ones as real, imaginary); `--beside` prints geometry and shapes instead; `--time` prints the best time of
-//! reading alone, in seconds.
+//! One line of tab-separated header fields a function on standard output; `--values` puts abscissa and
+//! ordinates of all functions into a file of little-endian doubles (complex ones as real, imaginary);
+//! `--beside` prints geometry and shapes instead; `--time` prints the best time of reading alone, in seconds.
 
 use std::error::Error;
 use std::time::Instant;

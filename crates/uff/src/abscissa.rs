@@ -3,8 +3,9 @@
 /// Abscissa of a function, in the unit of its abscissa axis.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Abscissa {
-    /// Evenly spaced: value `i` is `start + i·step`. The header of a universal file holds both in 13 columns, so
-    /// [`write()`](crate::write()) keeps as many digits as fit there (8 to 10 significant ones for everyday numbers).
+    /// Evenly spaced: value `i` is `start + i·step`. The header of a universal file holds both in 13 columns,
+    /// so [`write()`](crate::write()) keeps as many digits as fit there (8 to 10 significant ones for
+    /// everyday numbers).
     Even {
         /// First value.
         start: f64,

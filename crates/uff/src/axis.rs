@@ -43,8 +43,8 @@ pub mod data_type {
 pub struct Axis {
     /// Specific data type, see [`data_type`].
     pub data_type: i32,
-    /// Exponents of length, force and temperature as stored. They count only for [`data_type::GENERAL`] and for scalar
-    /// directions; see [`Axis::unit_exponents`].
+    /// Exponents of length, force and temperature as stored. They count only for [`data_type::GENERAL`] and
+    /// for scalar directions; see [`Axis::unit_exponents`].
     pub exponents: [i32; 3],
     /// Axis label, at most 20 characters; `NONE` if not used.
     pub label: String,
@@ -95,9 +95,9 @@ impl Axis {
         Axis::new(data_type::EXCITATION_FORCE, "Excitation Force", "N")
     }
 
-    /// Exponents of length, force and temperature in this quantity along `direction` (±1 to ±3 translation, ±4 to ±6
-    /// rotation, 0 scalar): the table of the specification's Addendum A, or the stored exponents where that table leaves
-    /// them to the record. Time never enters: all unit systems share the second.
+    /// Exponents of length, force and temperature in this quantity along `direction` (±1 to ±3 translation,
+    /// ±4 to ±6 rotation, 0 scalar): the table of the specification's Addendum A, or the stored exponents
+    /// where that table leaves them to the record. Time never enters: all unit systems share the second.
     pub fn unit_exponents(&self, direction: i32) -> [i32; 3] {
         let rotational = match direction.unsigned_abs() {
             1..=3 => false,

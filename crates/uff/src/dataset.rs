@@ -44,7 +44,8 @@ pub struct Unreadable {
 /// A function at a nodal degree of freedom (dataset 58 or 58b).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dataset58 {
-    /// The five ID lines, without blanks around them; at most 80 characters each. A blank line is written as `NONE`.
+    /// The five ID lines, without blanks around them; at most 80 characters each. A blank line is written as
+    /// `NONE`.
     pub id_lines: [String; 5],
     /// What the function is: FRF, coherence, time response, …
     pub function: FunctionType,
@@ -58,8 +59,8 @@ pub struct Dataset58 {
     pub response: Node,
     /// Where and in which direction the structure was excited.
     pub reference: Node,
-    /// Number of points that the header states, where an ASCII dataset is closed after fewer: those there are have been read, but which of
-    /// them are missing nobody knows.
+    /// Number of points that the header states, where an ASCII dataset is closed after fewer: those there are
+    /// have been read, but which of them are missing nobody knows.
     pub stated_points: Option<usize>,
     /// Where the ordinates sit.
     pub abscissa: Abscissa,

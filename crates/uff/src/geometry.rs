@@ -1,4 +1,5 @@
-//! The structure's geometry: where nodes are, in which axes, and what connects them (datasets 15, 2411, 18, 2420, 2412, 82).
+//! The structure's geometry: where nodes are, in which axes, and what connects them (datasets 15, 2411, 18,
+//! 2420, 2412, 82).
 //!
 //! | dataset | records |
 //! |---|---|
@@ -9,8 +10,9 @@
 //! | 2412, elements | `6I10`: label, descriptor, two property tables, colour, number of nodes; for beams (11, 21 to 24) three more numbers; nodes `8I10` |
 //! | 82, trace lines | `3I10`: number, number of nodes, colour; name; nodes `8I10`, 0 lifts the pen |
 //!
-//! Layouts as the University of Cincinnati's Structural Dynamics Research Laboratory publishes them. A matrix of 2420 is that of row vectors,
-//! x_global = x_local·R + t: row i is the local axis i in global coordinates, row 4 the origin.
+//! Layouts as the University of Cincinnati's Structural Dynamics Research Laboratory publishes them. A matrix
+//! of 2420 is that of row vectors, x_global = x_local·R + t: row i is the local axis i in global coordinates,
+//! row 4 the origin.
 
 use crate::Units;
 

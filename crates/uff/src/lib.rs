@@ -1,9 +1,12 @@
-//! Universal files (UFF, UNV), the exchange format of experimental modal analysis: bytes in, typed functions out, and back.
+//! Universal files (UFF, UNV), the exchange format of experimental modal analysis: bytes in, typed functions
+//! out, and back.
 //!
-//! A universal file is a row of datasets between `    -1` lines. This crate reads and writes **dataset 58** (a function at
-//! a nodal degree of freedom: an FRF, a coherence, a time history) in its ASCII form and its binary form **58b**, with the
-//! **dataset 164** (units) in force. It reads the geometry (**15**, **2411** nodes, **18**, **2420** coordinate systems, **2412** elements, **82** trace
-//! lines), mode shapes (**55**, **2414**) and the header (**151**). Every other dataset is skipped and counted. It opens no file: the caller brings the bytes.
+//! A universal file is a row of datasets between `    -1` lines. This crate reads and writes **dataset 58**
+//! (a function at a nodal degree of freedom: an FRF, a coherence, a time history) in its ASCII form and its
+//! binary form **58b**, with the **dataset 164** (units) in force. It reads the geometry (**15**, **2411**
+//! nodes, **18**, **2420** coordinate systems, **2412** elements, **82** trace lines), mode shapes
+//! (**55**, **2414**) and the header (**151**). Every other dataset is skipped and counted. It opens no file:
+//! the caller brings the bytes.
 //!
 //! | module of the docs | holds |
 //! |---|---|
@@ -42,17 +45,19 @@
 //! ```
 //!
 //! # What is lenient and what is not
-//! Records are read by their columns, and where the columns do not fit, by their blanks: fields that touch, columns that
-//! are off, short lines, CRLF, Fortran `D` exponents and exponents without a letter (`1.00000-100`) are all in circulation.
-//! Binary byte counts are often wrong (half of the truth for complex data), so the number of points decides and the closing
-//! `    -1` proves it. Nothing is guessed beyond that: a value that is missing, not a number or not finite is a [`ReadError`]. An ASCII function that
-//! is closed in good order but holds fewer whole points than its header states is read with what there is and says so
+//! Records are read by their columns, and where the columns do not fit, by their blanks: fields that touch,
+//! columns that are off, short lines, CRLF, Fortran `D` exponents and exponents without a letter
+//! (`1.00000-100`) are all in circulation. Binary byte counts are often wrong (half of the truth for complex
+//! data), so the number of points decides and the closing `    -1` proves it. Nothing is guessed beyond that:
+//! a value that is missing, not a number or not finite is a [`ReadError`]. An ASCII function that is closed
+//! in good order but holds fewer whole points than its header states is read with what there is and says so
 //! ([`Dataset58::stated_points`]): whoever needs it must refuse it, who does not need it can leave it aside.
 //!
 //! # Uneven abscissae in double precision
-//! The specification keeps the abscissa of double-precision data in single precision (`E13.5` beside `E20.12`). ASCII follows it.
-//! In binary [`write()`] stores abscissa and ordinate both as doubles, which loses nothing and is what other programs (pyuff)
-//! write and expect; [`read()`] takes either layout, told apart by where the closing `    -1` stands.
+//! The specification keeps the abscissa of double-precision data in single precision (`E13.5` beside
+//! `E20.12`). ASCII follows it. In binary [`write()`] stores abscissa and ordinate both as doubles, which
+//! loses nothing and is what other programs (pyuff) write and expect; [`read()`] takes either layout, told
+//! apart by where the closing `    -1` stands.
 
 mod abscissa;
 mod axis;

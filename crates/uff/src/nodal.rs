@@ -91,7 +91,8 @@ pub struct NodeValues {
 }
 
 impl NodalData {
-    /// Whether it is a mode: a displacement, velocity or acceleration shape of a real or complex mode at nodes.
+    /// Whether it is a mode: a displacement, velocity or acceleration shape of a real or complex mode at
+    /// nodes.
     pub fn is_mode(&self) -> bool {
         let shape = matches!(self.quantity, 0 | 1 | 8 | 11 | 12) && self.per_node > 1;
         let mode = matches!(

@@ -2,8 +2,8 @@
 
 use thiserror::Error;
 
-/// Why a file could not be read. Datasets are counted from 1 in file order, units and skipped ones included; lines count
-/// line feeds from 1, those inside binary data too, as an editor does.
+/// Why a file could not be read. Datasets are counted from 1 in file order, units and skipped ones included;
+/// lines count line feeds from 1, those inside binary data too, as an editor does.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum ReadError {

@@ -11,12 +11,13 @@ pub enum TemperatureMode {
 
 /// Unit system of a file (dataset 164), valid for all datasets after it.
 ///
-/// The rule of the specification: **values in file units are divided by the factor to become SI**. In feet, the length
-/// factor is 3.28084 (feet per metre).
+/// The rule of the specification: **values in file units are divided by the factor to become SI**. In feet,
+/// the length factor is 3.28084 (feet per metre).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Units {
-    /// Units code: 1 metre and newton, 2 foot and pound-force, 3 metre and kilogram-force, 4 foot and poundal, 5 mm and
-    /// mN, 6 cm and cN, 7 inch and pound-force, 8 mm and kilogram-force, 9 user-defined, 10 mm and newton.
+    /// Units code: 1 metre and newton, 2 foot and pound-force, 3 metre and kilogram-force, 4 foot and
+    /// poundal, 5 mm and mN, 6 cm and cN, 7 inch and pound-force, 8 mm and kilogram-force, 9 user-defined,
+    /// 10 mm and newton.
     pub code: i32,
     /// Description, for people only; at most 20 characters.
     pub description: String,
@@ -46,8 +47,8 @@ impl Units {
         }
     }
 
-    /// What a quantity with the given exponents of length, force and temperature is multiplied by to become SI.
-    /// Temperatures count as differences here.
+    /// What a quantity with the given exponents of length, force and temperature is multiplied by to become
+    /// SI. Temperatures count as differences here.
     pub fn si_per_unit(&self, exponents: [i32; 3]) -> f64 {
         let [length, force, temperature] = exponents;
         1.0 / (self.length_factor.powi(length)

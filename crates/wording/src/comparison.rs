@@ -219,7 +219,8 @@ pub(crate) fn scatter(scatter: &Scatter) -> String {
     )
 }
 
-/// What can be told of an order that is not stated as a whole: `a < c, d; b < d; the order of the others cannot be told`, or how many pairs of many.
+/// What can be told of an order that is not stated as a whole:
+/// `a < c, d; b < d; the order of the others cannot be told`, or how many pairs of many.
 pub fn decided(comparison: &Comparison, entry: &ElementRanking) -> String {
     let name = |joint: &usize| comparison.joints[*joint].name.as_str();
     let count: usize = entry.decided().map(|(_, larger)| larger.len()).sum();

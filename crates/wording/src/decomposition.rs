@@ -1,5 +1,5 @@
-//! A decomposition in words: its headline and what that rests on, and what was found, a line each. What is decided is decided by
-//! [`Judgement`](jointscope_decomposition::Judgement).
+//! A decomposition in words: its headline and what that rests on, and what was found, a line each. What is
+//! decided is decided by [`Judgement`](jointscope_decomposition::Judgement).
 
 use crate::element::{symbol, unit};
 use crate::format::{fixed, quantity, significant, trimmed};

@@ -7,7 +7,8 @@ use jointscope_findings::Verdict;
 /// Further quantities that are named at the most.
 const NAMES: usize = 3;
 
-/// What the repaired model still asks of the stated quantities, and what to do about it, with a space behind; nothing where it asks nothing.
+/// What the repaired model still asks of the stated quantities, and what to do about it, with a space behind;
+/// nothing where it asks nothing.
 pub(crate) fn departed(diagnosis: &Diagnosis) -> String {
     let mut remaining = remaining(diagnosis);
     let Some(first) = remaining.next() else { return String::new() };

@@ -11,7 +11,8 @@ use jointscope_diagnosis::{Diagnosis, Observation, OddRecord, Tried};
 use jointscope_findings::Verdict;
 use jointscope_frf::noise::NoiseSource;
 
-/// The verdict: what it is, and what to do about it. What the test itself did goes before everything else, then what the stated quantities would have to be.
+/// The verdict: what it is, and what to do about it. What the test itself did goes before everything else,
+/// then what the stated quantities would have to be.
 impl Says for Diagnosis {
     fn says(&self) -> String {
         let verdict = match &self.model_error {
@@ -168,7 +169,8 @@ impl Remarks for Diagnosis {
     }
 }
 
-/// From what the noise of the FRFs had to be estimated where no coherence over a stated number of averages tells it.
+/// From what the noise of the FRFs had to be estimated where no coherence over a stated number of averages
+/// tells it.
 fn of_noise(observation: &Observation) -> Vec<String> {
     let mut remarks = Vec::new();
     let pairs = observation.pairs();
@@ -259,7 +261,8 @@ fn of_observation(observation: &Observation) -> Vec<String> {
     remarks
 }
 
-/// `, and the mass of A would have to be 33 standard deviations off`, where the refit without effects takes a quantity that far.
+/// `, and the mass of A would have to be 33 standard deviations off`, where the refit without effects takes a
+/// quantity that far.
 fn farthest_quantity(diagnosis: &Diagnosis) -> String {
     diagnosis.farthest_quantity().map_or_else(String::new, |(path, deviations)| {
         let quantity = quantity_name(path);

@@ -1,4 +1,5 @@
-//! Effects: the name and the sentence that the table of effects has for every kind, with what was found filled in.
+//! Effects: the name and the sentence that the table of effects has for every kind, with what was found
+//! filled in.
 
 use crate::estimate::size_of;
 use crate::numbers::plain;
@@ -124,7 +125,8 @@ fn word(effect: &Effect, key: &str) -> String {
     }
 }
 
-/// A template with its keys, in braces, replaced by what they stand for; what is in brackets only where each of its parameters `is_sure`.
+/// A template with its keys, in braces, replaced by what they stand for; what is in brackets only where each
+/// of its parameters `is_sure`.
 fn filled(template: &str, stands_for: impl Fn(&str) -> String, is_sure: impl Fn(&str) -> bool) -> String {
     let mut text = String::new();
     for (index, part) in template.split(['[', ']']).enumerate() {

@@ -7,7 +7,8 @@ use jointscope_inference::Z95;
 /// Size from which a number is written with a power of ten.
 const LARGE: f64 = 1e7;
 
-/// Value and 95 % interval with unit, rounded to what is known by the `data`: `49.8 g (95 %: 49.1 to 50.5 g)`.
+/// Value and 95 % interval with unit, rounded to what is known by the `data`:
+/// `49.8 g (95 %: 49.1 to 50.5 g)`.
 pub(crate) fn size_of(estimate: &Estimate, data: &str) -> String {
     let Estimate { value, unit, .. } = *estimate;
     let Some([low, high]) = estimate.possible_interval() else {

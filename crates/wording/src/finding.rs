@@ -43,7 +43,8 @@ pub fn place_and_sizes(place: &Elsewhere) -> String {
     format!("at {} ({})", listed(&at), listed(&sizes))
 }
 
-/// `; it may also sit at x = 72.0 mm (mass −7.14 g), 27 % of its probability`, or nothing where every other place is refuted.
+/// `; it may also sit at x = 72.0 mm (mass −7.14 g), 27 % of its probability`, or nothing where every other
+/// place is refuted.
 fn other_places(finding: &FrfFinding) -> String {
     let places: Vec<String> = finding
         .evidence

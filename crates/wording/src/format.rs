@@ -1,4 +1,5 @@
-//! Numbers for engineers: the uncertainty sets the digits, the unit takes a prefix, and what is not finite is said in words.
+//! Numbers for engineers: the uncertainty sets the digits, the unit takes a prefix, and what is not finite is
+//! said in words.
 
 use crate::unit::{Scale, superscript};
 
@@ -10,8 +11,9 @@ const DIGITS_WITHOUT_STD: usize = 4;
 
 /// A value with its standard deviation and unit, as one string.
 ///
-/// Two significant digits of the standard deviation set the digits of the value; an SI prefix is taken where the unit allows one. `std` of
-/// `None` means not known (four significant digits, no ±), zero means exact, a standard deviation that is not finite is said in words.
+/// Two significant digits of the standard deviation set the digits of the value; an SI prefix is taken where
+/// the unit allows one. `std` of `None` means not known (four significant digits, no ±), zero means exact, a
+/// standard deviation that is not finite is said in words.
 ///
 /// ```
 /// use jointscope_wording::format::quantity;
@@ -24,7 +26,8 @@ pub fn quantity(value: f64, std: impl Into<Option<f64>>, unit: &str) -> String {
     QuantityText::new(value, std, unit).line()
 }
 
-/// The same in a given unit, for values that are read beside each other: a row, a pair, a value and its interval.
+/// The same in a given unit, for values that are read beside each other: a row, a pair, a value and its
+/// interval.
 ///
 /// ```
 /// use jointscope_wording::format::quantity_in;
@@ -134,7 +137,8 @@ pub fn magnitude(value: f64, unit: &str, digits: usize) -> String {
     format!("{} {}", significant(scale.of(value), digits), scale.unit()).trim_end().to_owned()
 }
 
-/// `1.432 ± 0.012 ± 0.031` for a column: the largest of the standard deviations and `coarsest` (SI) sets the digits, each keeps one of its own at least.
+/// `1.432 ± 0.012 ± 0.031` for a column: the largest of the standard deviations and `coarsest` (SI) sets the
+/// digits, each keeps one of its own at least.
 pub fn in_parts(value: f64, stds: &[f64], coarsest: f64, scale: &Scale) -> String {
     if !value.is_finite() {
         return NOT_DETERMINED.to_owned();
@@ -150,7 +154,8 @@ pub fn in_parts(value: f64, stds: &[f64], coarsest: f64, scale: &Scale) -> Strin
     stds.fold(fixed(scale.of(value), common), |text, std| format!("{text} ± {}", fixed(std, own(std))))
 }
 
-/// A value and its standard deviation as numbers of a table column that states the unit: `3.320 ± 0.020`, or [`NOT_DETERMINED`].
+/// A value and its standard deviation as numbers of a table column that states the unit: `3.320 ± 0.020`, or
+/// [`NOT_DETERMINED`].
 pub fn in_column(value: f64, std: impl Into<Option<f64>>, scale: &Scale) -> String {
     if !value.is_finite() {
         return NOT_DETERMINED.to_owned();
@@ -162,7 +167,8 @@ pub fn in_column(value: f64, std: impl Into<Option<f64>>, scale: &Scale) -> Stri
     }
 }
 
-/// A number of so many significant digits, a power of ten where it would be a row of zeros: `0.01234`, `1.234×10⁻⁷`.
+/// A number of so many significant digits, a power of ten where it would be a row of zeros: `0.01234`,
+/// `1.234×10⁻⁷`.
 pub fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return NOT_DETERMINED.to_owned();
@@ -183,7 +189,8 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
-/// A number of so many significant digits at the most, without the zeros that only rounding put there: `0.5`, `1000`.
+/// A number of so many significant digits at the most, without the zeros that only rounding put there: `0.5`,
+/// `1000`.
 pub fn plain(value: f64, digits: usize) -> String {
     trimmed(&significant(value, digits))
 }
@@ -246,8 +253,9 @@ pub(crate) fn minus(number: &str) -> String {
     }
 }
 
-/// Whether a character shows nothing itself but changes how others are shown: control characters other than line ends and tabs, line separators,
-/// and marks that turn the direction of writing. Neither page nor terminal may get one from a name.
+/// Whether a character shows nothing itself but changes how others are shown: control characters other than
+/// line ends and tabs, line separators, and marks that turn the direction of writing. Neither page nor
+/// terminal may get one from a name.
 pub fn hides(c: char) -> bool {
     c.is_control() && !matches!(c, '\n' | '\t')
         || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')

@@ -48,7 +48,8 @@ impl Says for SteppedDiagnosis {
     }
 }
 
-/// A level's natural frequency, Hz, with the digits that its deviation leaves: levels differ in the last ones.
+/// A level's natural frequency, Hz, with the digits that its deviation leaves: levels differ in the last
+/// ones.
 pub(crate) fn frequency(level: &LevelResult) -> String {
     let (hz, std) = level.resonance.frequency;
     // Without noise a deviation is next to nothing, and seven digits are enough.

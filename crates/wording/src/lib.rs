@@ -1,12 +1,13 @@
 //! Sentences: results as the user is told them.
 //!
-//! Results are typed facts; this crate alone turns them into words, for files, pages and the terminal alike. It decides nothing: what is
-//! doubtful, white, settled or not determined stands in the results.
+//! Results are typed facts; this crate alone turns them into words, for files, pages and the terminal alike.
+//! It decides nothing: what is doubtful, white, settled or not determined stands in the results.
 //!
 //! * [`Says`]: a result, a finding or a place in one plain sentence or a few words;
 //! * [`Remarks`]: what a reader should know besides;
 //! * [`Summary`]: what was found, a line each, for a terminal;
-//! * [`comparison`], [`models`], [`decomposition`]: joints side by side, models over measurements, and one by itself;
+//! * [`comparison`], [`models`], [`decomposition`]: joints side by side, models over measurements, and one by
+//!   itself;
 //! * [`format`](mod@format), [`unit`](mod@unit): numbers with their deviations and units;
 //! * [`effect_name`]: an effect's kind and place in a few words;
 //! * [`place_and_sizes`]: another place of a finding, and its sizes there;

@@ -23,7 +23,8 @@ fn most_clearly(diagnosis: &Diagnosis, fit: &Fit) -> String {
     }
 }
 
-/// How the mismatch goes with frequency: by δ(ω) of the best place, or by the relative error at both ends of the band.
+/// How the mismatch goes with frequency: by δ(ω) of the best place, or by the relative error at both ends of
+/// the band.
 pub(crate) fn varies(diagnosis: &Diagnosis, fit: &Fit) -> String {
     if let Some(variation) = diagnosis.best_place().and_then(variation) {
         return format!(", where what is missing, δ(ω), {variation}");

@@ -64,7 +64,8 @@ pub(crate) fn verdict(diagnosis: &Diagnosis, [refitted, repaired]: &[ModelError;
     }
 }
 
-/// ` Lines that were never fitted are predicted to 0.23 % with it, to 6.1 % without.`, where that is much better: sizes within what is usual do not show it.
+/// ` Lines that were never fitted are predicted to 0.23 % with it, to 6.1 % without.`, where that is much
+/// better: sizes within what is usual do not show it.
 fn predicted(diagnosis: &Diagnosis) -> String {
     let much = diagnosis.held_out.as_ref().filter(|own| own.nrmse_refitted > MUCH * own.nrmse_repaired);
     much.map_or_else(String::new, |own| {
@@ -89,7 +90,8 @@ fn off_by(error: &ModelError, missed: Option<f64>) -> String {
     }
 }
 
-/// What has changed since a baseline, on which the model is off by `baseline`; of the change it misses `refitted` without the findings and `repaired` with.
+/// What has changed since a baseline, on which the model is off by `baseline`; of the change it misses
+/// `refitted` without the findings and `repaired` with.
 fn since(diagnosis: &Diagnosis, baseline: &ModelError, [refitted, repaired]: [&ModelError; 2]) -> String {
     let change = match diagnosis.verdict {
         Verdict::Consistent => {
@@ -199,8 +201,8 @@ fn known_by(error: &ErrorInWords) -> &'static str {
     if error.is_stated { "stated" } else { "usually" }
 }
 
-/// ` (and the mass of A 33 standard deviations from what is stated)`, where the refit without effects takes a quantity that far and the effects
-/// bring it back.
+/// ` (and the mass of A 33 standard deviations from what is stated)`, where the refit without effects takes a
+/// quantity that far and the effects bring it back.
 fn farthest_quantity(diagnosis: &Diagnosis) -> String {
     let bent = diagnosis
         .farthest_quantity()

@@ -12,7 +12,8 @@ pub fn source(source: Source) -> &'static str {
     }
 }
 
-/// How many ratios agree with 1, and where a model is stiffer or softer, more or less damped than what was measured; nothing where no model is set against a measurement.
+/// How many ratios agree with 1, and where a model is stiffer or softer, more or less damped than what was
+/// measured; nothing where no model is set against a measurement.
 pub fn sentence(all: &[ModelRatios]) -> Option<String> {
     if all.is_empty() {
         return None;

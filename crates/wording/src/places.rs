@@ -24,7 +24,8 @@ impl Says for Site {
     }
 }
 
-/// A part of a recording that is held out, as one would say it: `180 to 240 Hz` for `band 180:240`, `FRF 4/2` for `frf 4/2`.
+/// A part of a recording that is held out, as one would say it: `180 to 240 Hz` for `band 180:240`, `FRF 4/2`
+/// for `frf 4/2`.
 pub fn held_out_part(name: &str) -> String {
     if let Some(frf) = name.strip_prefix("frf ") {
         return format!("FRF {frf}");
@@ -39,7 +40,8 @@ pub fn held_out_part(name: &str) -> String {
     ends.map_or_else(|| name.to_owned(), |(from, to)| format!("{from} to {to} Hz"))
 }
 
-/// A quantity by its path in the file, as one would say it: `the mass of B` for `bodies/B/mass`; the path itself where there are no words for it.
+/// A quantity by its path in the file, as one would say it: `the mass of B` for `bodies/B/mass`; the path
+/// itself where there are no words for it.
 pub(crate) fn quantity_name(path: &str) -> String {
     let parts: Vec<&str> = path.split('/').collect();
     let (what, whose) = match parts.as_slice() {
@@ -55,7 +57,8 @@ pub(crate) fn quantity_name(path: &str) -> String {
     format!("the {what} of {whose}")
 }
 
-/// How δ(ω) of a place varies, with no physics named: `grows as frequency to the power 2.0, real and negative`.
+/// How δ(ω) of a place varies, with no physics named:
+/// `grows as frequency to the power 2.0, real and negative`.
 pub(crate) fn variation(location: &Location) -> Option<String> {
     let Variation { power, phase } = location.variation()?;
     let phase = match phase {

@@ -17,8 +17,9 @@ impl Scale {
         Self { factor: 1.0, unit: typeset(unit) }
     }
 
-    /// The prefix in which a value of this `magnitude` (SI, sign ignored) reads as 1 to 999. Units that take no prefix (`%`, `dB`, `1/s`, `m^4`, one
-    /// that already has a prefix) stay as they are, and so do magnitudes for which no usual prefix exists.
+    /// The prefix in which a value of this `magnitude` (SI, sign ignored) reads as 1 to 999. Units that take
+    /// no prefix (`%`, `dB`, `1/s`, `m^4`, one that already has a prefix) stay as they are, and so do
+    /// magnitudes for which no usual prefix exists.
     pub(crate) fn for_magnitude(magnitude: f64, unit: &str) -> Self {
         let magnitude = magnitude.abs();
         if !magnitude.is_finite() || magnitude == 0.0 {
@@ -49,7 +50,8 @@ impl Scale {
         }
     }
 
-    /// The prefix that suits the largest finite magnitude among `values`: one unit for a whole column or axis.
+    /// The prefix that suits the largest finite magnitude among `values`: one unit for a whole column or
+    /// axis.
     pub fn for_values(values: impl IntoIterator<Item = f64>, unit: &str) -> Self {
         let largest = values
             .into_iter()
@@ -58,7 +60,8 @@ impl Scale {
         Self::for_magnitude(largest, unit)
     }
 
-    /// The unit of a quantity that a fixture states: places and lengths in mm, as drawings have them, however small their deviations; all else as in [`Scale::for_values`].
+    /// The unit of a quantity that a fixture states: places and lengths in mm, as drawings have them, however
+    /// small their deviations; all else as in [`Scale::for_values`].
     pub fn of_stated(values: impl IntoIterator<Item = f64>, unit: &str) -> Self {
         let scale = Self::for_values(values, unit);
         if unit == "m" && scale.factor < 1.0 {
@@ -67,7 +70,8 @@ impl Scale {
         scale
     }
 
-    /// The SI kilogram already has a prefix, so masses below 0.1 kg go by the gram. An inertia in kg·m² stays: nobody reads mg·m².
+    /// The SI kilogram already has a prefix, so masses below 0.1 kg go by the gram. An inertia in kg·m²
+    /// stays: nobody reads mg·m².
     fn for_mass(magnitude: f64) -> Self {
         let (factor, symbol) = match magnitude {
             m if !(1e-7..0.1).contains(&m) => (1.0, "kg"),
@@ -99,7 +103,8 @@ fn leading_symbol(unit: &str) -> &str {
     &unit[..end]
 }
 
-/// Writes a unit of a file (`N*m/rad`, `m/s^2`) the way it is printed (`N·m/rad`, `m/s²`). A pure number (`1`) has no unit.
+/// Writes a unit of a file (`N*m/rad`, `m/s^2`) the way it is printed (`N·m/rad`, `m/s²`). A pure number
+/// (`1`) has no unit.
 pub fn typeset(unit: &str) -> String {
     if unit == "1" {
         return String::new();

@@ -31,7 +31,8 @@ pub(super) struct CheckArguments {
     /// Print check.json to standard output, for scripts.
     #[arg(long)]
     pub json: bool,
-    /// Also write tables and curves of the page (csv), its figures (svg), or FRFs as recorded and as the fixture has them (uff).
+    /// Also write tables and curves of the page (csv), its figures (svg), or FRFs as recorded and as the
+    /// fixture has them (uff).
     #[arg(long, value_name = "KIND", value_enum, value_delimiter = ',', requires = "output")]
     pub also: Vec<Also>,
     /// The directory to write check.json and report.html to [default: nothing is written].
@@ -41,7 +42,8 @@ pub(super) struct CheckArguments {
     pub estimation: EstimationArguments,
 }
 
-/// Checks, writes `check.json` and `report.html` if a directory is given, and answers with what is odd and the figures that matter.
+/// Checks, writes `check.json` and `report.html` if a directory is given, and answers with what is odd and
+/// the figures that matter.
 pub(super) fn run(arguments: &CheckArguments) -> Result<String, Refusal> {
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let recording = RecordingArguments { files: arguments.files.clone(), reading: arguments.reading.clone() };

@@ -1,4 +1,5 @@
-//! `jointscope compare`: decompositions in, their joints side by side out: differences, ratios, orders, scatter of specimens.
+//! `jointscope compare`: decompositions in, their joints side by side out: differences, ratios, orders,
+//! scatter of specimens.
 
 mod joints;
 
@@ -19,15 +20,17 @@ use joints::Listed;
 /// Options of `jointscope compare`.
 #[derive(Debug, Args)]
 pub(super) struct CompareArguments {
-    /// Directories with the stiffness.json of a decomposition each; a joint is called by its directory. Of several joints found at once all are compared, called DIR/J, or the
-    /// one that `DIR/J` names.
+    /// Directories with the stiffness.json of a decomposition each; a joint is called by its directory. Of
+    /// several joints found at once all are compared, called DIR/J, or the one that `DIR/J` names.
     #[arg(required_unless_present_any = ["specimens", "said"], value_name = "DIR")]
     pub directories: Vec<PathBuf>,
-    /// What a directory is of: `sim=DIR` a simulation, `exp=DIR` a measurement, `fem=DIR` finite elements. Plots draw each kind with dashes of its own, and ratios of models to
-    /// measurements have a table. May be given several times; the directory need not be listed again.
+    /// What a directory is of: `sim=DIR` a simulation, `exp=DIR` a measurement, `fem=DIR` finite elements.
+    /// Plots draw each kind with dashes of its own, and ratios of models to measurements have a table. May be
+    /// given several times; the directory need not be listed again.
     #[arg(long = "as", value_name = "KIND=DIR", value_parser = said)]
     pub said: Vec<Said>,
-    /// Directories of several specimens of one kind, whose scatter is wanted: `glued=a1,a2,a3`, or `glued=a/J,a/K`. May be given several times.
+    /// Directories of several specimens of one kind, whose scatter is wanted: `glued=a1,a2,a3`, or
+    /// `glued=a/J,a/K`. May be given several times.
     #[arg(long, value_name = "NAME=DIR,DIR…", value_parser = kind)]
     pub specimens: Vec<Kind>,
     /// Take every joint as tested on blocks of its own, though the fixtures state the same ones.
@@ -73,7 +76,8 @@ fn kind(text: &str) -> Result<Kind, String> {
     }
 }
 
-/// Compares and writes `comparison.json` and `report.html`; answers with ratios, orders and where the page is, or with `comparison.json` itself.
+/// Compares and writes `comparison.json` and `report.html`; answers with ratios, orders and where the page
+/// is, or with `comparison.json` itself.
 pub(super) fn run(arguments: &CompareArguments) -> Result<String, Refusal> {
     let mut listed = Listed::default();
     for path in &arguments.directories {

@@ -33,7 +33,8 @@ pub(super) struct DecomposeArguments {
     /// Band of the averages and of the fit in Hz [default: the quietest band, and all lines].
     #[arg(long, value_name = "F1:F2", value_parser = band)]
     pub band: Option<Band>,
-    /// How K and C follow from the FRFs: `exact`, or eq (7) of the `paper` without the transport across the joint.
+    /// How K and C follow from the FRFs: `exact`, or eq (7) of the `paper` without the transport across the
+    /// joint.
     #[arg(long, value_parser = one_of(&RELATIONS), default_value = "exact")]
     pub relation: Relation,
     /// Take numbers of the fixture without a standard deviation as exact.
@@ -49,8 +50,8 @@ pub(super) struct DecomposeArguments {
 
 const RELATIONS: [(&str, Relation); 2] = [("exact", Relation::Exact), ("paper", Relation::Paper)];
 
-/// Decomposes and writes `stiffness.json` and `report.html`; answers with what was found and where the page is, or with `stiffness.json` itself.
-/// Many cases each get a directory.
+/// Decomposes and writes `stiffness.json` and `report.html`; answers with what was found and where the page
+/// is, or with `stiffness.json` itself. Many cases each get a directory.
 pub(super) fn run(arguments: &DecomposeArguments) -> Result<Said, Refusal> {
     if arguments.recording.files.is_empty() {
         let task = Task {
@@ -77,7 +78,8 @@ fn inputs(arguments: &DecomposeArguments) -> impl Iterator<Item = &PathBuf> {
     std::iter::once(&arguments.fixture).chain(&arguments.recording.files)
 }
 
-/// The joint in the recordings, or all of them, where one alone is not asked for; `command` is the line that gives this answer.
+/// The joint in the recordings, or all of them, where one alone is not asked for; `command` is the line that
+/// gives this answer.
 fn found(arguments: &DecomposeArguments, command: String, one_joint: bool) -> Result<Answered, Refusal> {
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let measurement = arguments.recording.measurement(&fixture)?;

@@ -30,7 +30,8 @@ pub(crate) struct DiagnoseArguments {
     pub fixture: PathBuf,
     #[command(flatten)]
     pub recording: RecordingArguments,
-    /// A recording of the same structure when it was known to be right: what has changed since is diagnosed. May be given again.
+    /// A recording of the same structure when it was known to be right: what has changed since is diagnosed.
+    /// May be given again.
     #[arg(long, value_name = "B.uff")]
     pub baseline: Vec<PathBuf>,
     /// The band to use, in Hz [default: all lines].
@@ -42,7 +43,8 @@ pub(crate) struct DiagnoseArguments {
     /// FRFs to judge by, which no fit sees [default: one, where there are four or more].
     #[arg(long, value_name = "OUT/IN", value_parser = frf_pair, num_args = 1..)]
     pub hold_out: Vec<FrfPair>,
-    /// Seconds after which the search ends with what it has found [default: it ends after a fixed amount of work, most of a minute].
+    /// Seconds after which the search ends with what it has found [default: it ends after a fixed amount of
+    /// work, most of a minute].
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub time_limit: Option<Duration>,
     /// Take numbers of the fixture without a standard deviation as exact.
@@ -59,8 +61,8 @@ pub(crate) struct DiagnoseArguments {
     pub estimation: EstimationArguments,
 }
 
-/// Diagnoses, and writes `diagnosis.json`, `refitted.json`, `repaired.json` and `report.html`; answers with what was found and where the page
-/// is, or with `diagnosis.json` itself. Many cases each get a directory.
+/// Diagnoses, and writes `diagnosis.json`, `refitted.json`, `repaired.json` and `report.html`; answers with
+/// what was found and where the page is, or with `diagnosis.json` itself. Many cases each get a directory.
 pub(super) fn run(arguments: &DiagnoseArguments) -> Result<Said, Refusal> {
     if arguments.recording.files.is_empty() {
         let task = Task {

@@ -71,7 +71,8 @@ fn test_name(sources: &[jointscope::recordings::Source]) -> String {
     history.map_or_else(String::new, |dataset| dataset.id_lines[0].clone())
 }
 
-/// ID line 2: estimator and hits. ID line 3: the exponential window, which whoever reads the FRFs must know of.
+/// ID line 2: estimator and hits. ID line 3: the exponential window, which whoever reads the FRFs must know
+/// of.
 fn state_origin(datasets: &mut [Dataset58], estimate: &Estimate, estimator: &str) {
     for dataset in datasets {
         let reference = dataset.reference.number.to_string();

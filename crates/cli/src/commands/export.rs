@@ -1,4 +1,5 @@
-//! `jointscope export`: a decomposition or a diagnosis in, what was found as elements of a finite-element program out.
+//! `jointscope export`: a decomposition or a diagnosis in, what was found as elements of a finite-element
+//! program out.
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +17,8 @@ use crate::values::one_of;
 /// Options of `jointscope export`.
 #[derive(Debug, Args)]
 pub(super) struct ExportArguments {
-    /// The directory that `decompose` or `diagnose` wrote to; or its stiffness.json or diagnosis.json, where it holds both.
+    /// The directory that `decompose` or `diagnose` wrote to; or its stiffness.json or diagnosis.json, where
+    /// it holds both.
     #[arg(value_name = "DIR")]
     pub answer: PathBuf,
     /// The program that is to read it.
@@ -28,13 +30,15 @@ pub(super) struct ExportArguments {
     /// Only this joint of several.
     #[arg(long, value_name = "J")]
     pub joint: Option<String>,
-    /// Nodes of your model at the joint's near and far end, others are numbered from --first-id; without it all are defined in the file and numbered like the fixture's points.
+    /// Nodes of your model at the joint's near and far end, others are numbered from --first-id; without it
+    /// all are defined in the file and numbered like the fixture's points.
     #[arg(long, value_name = "FROM,TO", value_parser = nodes)]
     pub nodes: Option<[u64; 2]>,
     /// First number of elements, properties and of nodes that no point has.
     #[arg(long, value_name = "N", default_value_t = 900_001, value_parser = clap::value_parser!(u64).range(1..=99_000_000))]
     pub first_id: u64,
-    /// How a joint is written: `bush` or `dmig` (nastran), `element` or `matrix` (abaqus) [default: bush where it holds the joint, element].
+    /// How a joint is written: `bush` or `dmig` (nastran), `element` or `matrix` (abaqus) [default: bush
+    /// where it holds the joint, element].
     #[arg(long, value_parser = one_of(&FORMS))]
     pub form: Option<Form>,
     /// K and C by frequency too: PBUSHT and tables (nastran), rows (csv, json).

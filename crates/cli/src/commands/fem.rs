@@ -20,7 +20,8 @@ use crate::refusal::Refusal;
 pub(super) struct FemArguments {
     #[command(flatten)]
     pub frfs: ComputedFrfs,
-    /// Superpose only the rigid motions and the first N transverse modes [default: all modes up to twice the last line, and what lies beyond].
+    /// Superpose only the rigid motions and the first N transverse modes [default: all modes up to twice the
+    /// last line, and what lies beyond].
     #[arg(long, value_name = "N")]
     pub modes: Option<usize>,
     /// Elements where a strip meets its blocks: its thickness over N.

@@ -51,13 +51,16 @@ pub(super) struct InitArguments {
     /// Recordings whose nodes become the points; their places are to be filled in.
     #[arg(long, value_name = "F.uff", num_args = 1..)]
     pub points_from: Vec<PathBuf>,
-    /// Recordings whose nodes become the points at the places of their geometry (datasets 15, 2411), with --blocks or --beam, or alone.
+    /// Recordings whose nodes become the points at the places of their geometry (datasets 15, 2411),
+    /// with --blocks or --beam, or alone.
     #[arg(long, value_name = "F.uff", num_args = 1.., conflicts_with = "points_from")]
     pub from_uff: Vec<PathBuf>,
-    /// The axis of the geometry along which the structure lies: x, y or z [default: the one along which the nodes reach farthest].
+    /// The axis of the geometry along which the structure lies: x, y or z [default: the one along which the
+    /// nodes reach farthest].
     #[arg(long, value_name = "AXIS", value_parser = axis, requires = "from_uff")]
     pub axis: Option<SpatialAxis>,
-    /// The abscissa in the geometry, mm, where the fixture's x = 0 is [default: 0 where the points then lie on the structure, else their middle goes to its middle].
+    /// The abscissa in the geometry, mm, where the fixture's x = 0 is [default: 0 where the points then lie
+    /// on the structure, else their middle goes to its middle].
     #[arg(long, value_name = "MM", allow_negative_numbers = true, requires = "from_uff")]
     pub origin: Option<f64>,
     /// The unit of the geometry where the files do not state it, such as mm.
@@ -164,7 +167,8 @@ fn points(files: &[PathBuf], lines: &mut Vec<String>) -> Result<Vec<String>, Ref
         .filter(|channel| matches!(channel.direction.abs(), 0 | 2))
         .map(|channel| channel.node)
         .collect();
-    // One direction a node is the fixture's: of a triaxial sensor the first that there is, and none where ±y is among them.
+    // One direction a node is the fixture's: of a triaxial sensor the first that there is, and none where ±y
+    // is among them.
     let mut elsewhere: BTreeMap<i64, FileChannel> = BTreeMap::new();
     for channel in channels.iter().filter(|channel| nodes.contains(&channel.node)) {
         let direction = channel.direction.abs();
@@ -199,7 +203,8 @@ fn has_places(files: &[PathBuf], named: &[String]) -> Result<Option<String>, Ref
 /// Points whose names alone are known, and those whose places are, by name and abscissa in m.
 type Points = (Vec<String>, Vec<(String, f64)>);
 
-/// The nodes of recordings at the places of their geometry, and what is to be said of them. Where there are FRFs or histories, their nodes are the points; else all are.
+/// The nodes of recordings at the places of their geometry, and what is to be said of them. Where there are
+/// FRFs or histories, their nodes are the points; else all are.
 fn placed(arguments: &InitArguments, lines: &mut Vec<String>) -> Result<Points, Refusal> {
     let files = &arguments.from_uff;
     let sources = files.iter().map(|path| input::source(path)).collect::<Result<Vec<_>, _>>()?;

@@ -1,4 +1,5 @@
-//! Many cases at once, for `diagnose` and `decompose`: tried beside each other, those that have their answer left out, a share of them for a cluster's job.
+//! Many cases at once, for `diagnose` and `decompose`: tried beside each other, those that have their answer
+//! left out, a share of them for a cluster's job.
 
 use std::collections::BTreeSet;
 use std::ffi::{OsStr, OsString};
@@ -25,7 +26,8 @@ use crate::said::Said;
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Many cases (FIXTURE is a folder of them or a list, without recordings)")]
 pub(crate) struct ManyArguments {
-    /// Try only share I of N of the cases, for job I of a cluster's job array; `jointscope summary DIR` joins the shares.
+    /// Try only share I of N of the cases, for job I of a cluster's job array; `jointscope summary DIR` joins
+    /// the shares.
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
     /// Cases that are tried at the same time, which bounds the memory needed [default: one a processor].
@@ -120,7 +122,8 @@ enum End {
     Refused,
 }
 
-/// Tries cases, as many at the same time as there are jobs; each has threads of its own, so that no more than that are in memory.
+/// Tries cases, as many at the same time as there are jobs; each has threads of its own, so that no more than
+/// that are in memory.
 fn tried(
     task: &Task,
     cases: &[&Case],
@@ -163,7 +166,8 @@ fn tried(
     Ok(ends.into_iter().map(|(_, end)| end).collect())
 }
 
-/// One case: its answer written, or why there is none. An answer that cannot be written ends everything: so would all others.
+/// One case: its answer written, or why there is none. An answer that cannot be written ends everything: so
+/// would all others.
 fn one(
     task: &Task,
     case: &Case,
@@ -226,7 +230,8 @@ fn is_done(command: Command, folder: &Path, line: &str, inputs: &[PathBuf]) -> b
     file.get("made") == Some(&made)
 }
 
-/// The command line that answers a case alone: the one that was typed with fixture and recordings in place of the cases.
+/// The command line that answers a case alone: the one that was typed with fixture and recordings in place of
+/// the cases.
 fn command_of(typed: impl Iterator<Item = OsString>, task: &Task, case: &Case, folder: &Path) -> String {
     let mut words: Vec<String> = vec![task.command.name().to_owned(), case.fixture.clone()];
     words.extend(case.recordings.iter().cloned());

@@ -1,4 +1,5 @@
-//! `jointscope modes`: recordings in, modes with their standard deviations and a page out, and a fixture with measured damping ratios if wanted.
+//! `jointscope modes`: recordings in, modes with their standard deviations and a page out, and a fixture with
+//! measured damping ratios if wanted.
 
 use std::path::PathBuf;
 
@@ -33,7 +34,8 @@ pub(super) struct ModesArguments {
     /// Frequencies in Hz of the poles to take from the chart, in place of the automatic selection.
     #[arg(long, value_name = "HZ", value_parser = picked, num_args = 1..)]
     pub pick: Vec<f64>,
-    /// A fixture file (JSON) whose points the channels are; its elastic modes are matched with the measured ones.
+    /// A fixture file (JSON) whose points the channels are; its elastic modes are matched with the measured
+    /// ones.
     #[arg(long, value_name = "FIXTURE")]
     pub fixture: Option<PathBuf>,
     /// Write the fixture with the measured damping ratios to this file.
@@ -43,7 +45,8 @@ pub(super) struct ModesArguments {
     pub destination: Destination,
 }
 
-/// Finds the modes and writes `modes.json` and `report.html`; answers with what was found and where the page is, or with `modes.json` itself.
+/// Finds the modes and writes `modes.json` and `report.html`; answers with what was found and where the page
+/// is, or with `modes.json` itself.
 pub(super) fn run(arguments: &ModesArguments) -> Result<String, Refusal> {
     let fixture = arguments.fixture.as_ref().map(|path| FixtureFile::read(path)).transpose()?;
     let recording = match &fixture {

@@ -27,7 +27,8 @@ use crate::values::{band, spectral_lines};
 pub(super) struct PlanArguments {
     /// The fixture file (JSON).
     pub fixture: PathBuf,
-    /// What was recorded of it (UFF, UNV, CSV, MAT), which is diagnosed first; or the directory of a diagnosis, which is made again from its files.
+    /// What was recorded of it (UFF, UNV, CSV, MAT), which is diagnosed first; or the directory of a
+    /// diagnosis, which is made again from its files.
     #[arg(value_name = "F.uff|DIR")]
     pub files: Vec<PathBuf>,
     #[command(flatten)]
@@ -35,16 +36,19 @@ pub(super) struct PlanArguments {
     /// The directory of a diagnosis, or its diagnosis.json.
     #[arg(long, value_name = "DIR", conflicts_with = "files")]
     pub diagnosis: Option<PathBuf>,
-    /// Instead of names: what makes the 95 % interval of a joint's element narrower, half of it stated, such as J/k11=1% or J/k22=50.
+    /// Instead of names: what makes the 95 % interval of a joint's element narrower, half of it stated, such
+    /// as J/k11=1% or J/k22=50.
     #[arg(long, value_name = "JOINT/ELEMENT=WIDTH", value_parser = wanted)]
     pub interval: Option<Wanted>,
     /// Lines of a test that nobody has made yet, in Hz, for --interval without recordings.
     #[arg(long, value_name = "FROM:TO:STEP", value_parser = spectral_lines, requires = "interval", conflicts_with = "files")]
     pub lines: Option<SpectralLines>,
-    /// A further test of the same structure with a mass added or off its supports: the fixture that describes it then, and what was recorded.
+    /// A further test of the same structure with a mass added or off its supports: the fixture that describes
+    /// it then, and what was recorded.
     #[arg(long, alias = "also", num_args = 2, value_names = ["FIXTURE", "G.uff"], conflicts_with = "interval")]
     pub second_test: Vec<PathBuf>,
-    /// The finding whose names are to be told apart, counted from 1 [default: the one that is named least surely].
+    /// The finding whose names are to be told apart, counted from 1 [default: the one that is named least
+    /// surely].
     #[arg(long, value_name = "N", conflicts_with = "interval")]
     pub finding: Option<usize>,
     /// Points between which FRFs are considered [default: all of a small structure].

@@ -1,4 +1,5 @@
-//! `jointscope simulate`: a fixture with amplitude-dependent effects and recorded forces in, response histories out.
+//! `jointscope simulate`: a fixture with amplitude-dependent effects and recorded forces in, response
+//! histories out.
 
 use std::path::PathBuf;
 

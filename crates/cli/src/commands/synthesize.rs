@@ -25,7 +25,8 @@ pub(super) struct SynthesizeArguments {
 /// The noise of a hammer test.
 #[derive(Debug, Args)]
 struct NoiseArguments {
-    /// As a hammer test reads them, with coherence: noise of every blow, in per cent of each response's rms over the lines, and a tenth of that on the force.
+    /// As a hammer test reads them, with coherence: noise of every blow, in per cent of each response's rms
+    /// over the lines, and a tenth of that on the force.
     #[arg(long, value_name = "PERCENT", value_parser = percent, allow_negative_numbers = true)]
     noise: Option<f64>,
     /// Blows averaged for an FRF (with `--noise`).

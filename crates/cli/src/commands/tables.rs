@@ -14,7 +14,8 @@ use crate::refusal::Refusal;
 /// Options of `jointscope tables`.
 #[derive(Debug, Args)]
 pub(super) struct TablesArguments {
-    /// Your own decomposition of an example (a directory with stiffness.json, made with `--relation paper`), for the column EXP.
+    /// Your own decomposition of an example (a directory with stiffness.json, made with `--relation paper`),
+    /// for the column EXP.
     #[arg(long, value_name = "E2=DIR", num_args = 1.., value_parser = measured)]
     pub measured: Vec<(String, PathBuf)>,
     /// Leave the finite-element cells out.

@@ -41,7 +41,8 @@ fn joints_are_ranked_with_the_probability_of_the_order() {
     assert_eq!(file["joints"][0]["name"], "sim");
     let page = bench.text("out/report.html");
     assert!(page.contains("3 joints side by side") && page.contains("Rank order"));
-    // The strip of the second is 2.3/2.864708 of the first's, which the fixture they share knows to a thousandth at best.
+    // The strip of the second is 2.3/2.864708 of the first's, which the fixture they share knows to a
+    // thousandth at best.
     let ratio = &file["pairs"][1]["numbers"][0];
     assert_eq!((&file["pairs"][1]["second"], &ratio["element"]), (&"soft".into(), &"K11".into()));
     let value = ratio["ratio"]["value"].as_f64().unwrap();

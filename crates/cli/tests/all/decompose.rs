@@ -109,8 +109,8 @@ fn the_shipped_examples_joint_comes_out_as_soft_as_its_readme_says() {
     }
     let fit = &file["maximum_likelihood"];
     let found = matrix(&fit["stiffness"]);
-    // The table of fixtures/glued-joint/README.md. The strip's mass, which the fixture leaves out, costs a tenth;
-    // what the fixture believes lies twice as high.
+    // The table of fixtures/glued-joint/README.md. The strip's mass, which the fixture leaves out, costs a
+    // tenth; what the fixture believes lies twice as high.
     for (i, j, truth, believed) in
         [(0, 0, 1.4339e6, 2.8266e6), (0, 1, -4.5212e4, -9.1864e4), (1, 1, 2.1887e3, 3.9808e3)]
     {
@@ -159,7 +159,8 @@ fn the_papers_relation_gives_its_own_closed_form_signs_included() {
     bench.done(&decompose(ON_TWO_BLOCKS, &["--relation", "paper", "-o", "out"]));
     let file = bench.json("out/stiffness.json");
     assert_eq!(file["relation"], "paper");
-    // Eq (7) on two rigid blocks and a massless beam, I about the centres of gravity, c their distance from 2 and 3.
+    // Eq (7) on two rigid blocks and a massless beam, I about the centres of gravity, c their distance from 2
+    // and 3.
     let (ei, l, inertia, c) = (BENDING_STIFFNESS, LENGTH, 9.5e-4, 0.03);
     let s = 2.0 * c / inertia;
     for line in lines(&file) {

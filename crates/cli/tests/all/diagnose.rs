@@ -6,7 +6,8 @@ use jointscope_samples::{Noise, TWO_STOREYS, with};
 use num_complex::Complex64;
 use serde_json::Value;
 
-/// Recordings of the storeys: FRFs 1/1, 2/1, with noise that is the same each time, and effects in `physics` where given.
+/// Recordings of the storeys: FRFs 1/1, 2/1, with noise that is the same each time, and effects in `physics`
+/// where given.
 fn storeys(name: &str, physics: &str) -> Bench {
     let bench = Bench::new(name);
     bench.write("believed.json", TWO_STOREYS);

@@ -12,7 +12,8 @@ use num_complex::Complex64;
 const SAMPLES: usize = 2048;
 const INTERVAL: f64 = 1.0 / 4096.0;
 
-/// [`TWO_BLOCKS`] with its FRFs in `frf.uff`, and two hits at each of 1 and 2 in `hits.uff`, whose responses are those FRFs times the force.
+/// [`TWO_BLOCKS`] with its FRFs in `frf.uff`, and two hits at each of 1 and 2 in `hits.uff`, whose responses
+/// are those FRFs times the force.
 fn bench(name: &str) -> Bench {
     static FILES: LazyLock<Vec<(PathBuf, Vec<u8>)>> = LazyLock::new(|| struck().into_files());
     Bench::with(name, &FILES)

@@ -1,4 +1,5 @@
-//! What goes wrong around a run: pipes, files that change under it, no room, folders of other runs, names given twice.
+//! What goes wrong around a run: pipes, files that change under it, no room, folders of other runs, names
+//! given twice.
 #![cfg(unix)]
 
 use std::fs;

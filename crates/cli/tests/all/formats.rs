@@ -6,7 +6,8 @@ use crate::common::{Bench, TWO_BLOCKS};
 
 const LINES: &str = "50:1000:10";
 
-/// The FRFs of `frf.uff` as a table: the first as real and imaginary parts, the second as magnitude and phase, with decimal commas if wanted.
+/// The FRFs of `frf.uff` as a table: the first as real and imaginary parts, the second as magnitude and
+/// phase, with decimal commas if wanted.
 fn table(bench: &Bench, comma: bool) -> String {
     let datasets = bench.datasets("frf.uff");
     let mut header = vec!["frequency [Hz]".to_owned()];

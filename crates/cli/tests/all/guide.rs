@@ -1,4 +1,5 @@
-//! The guides to a structure of one's own, to many tests and to comparisons, typed along: their commands in their order, their excerpts put into the files that they name.
+//! The guides to a structure of one's own, to many tests and to comparisons, typed along: their commands in
+//! their order, their excerpts put into the files that they name.
 
 use crate::common::Bench;
 use serde_json::Value;
@@ -104,7 +105,8 @@ fn many_tests_go_from_folders_to_one_table_as_the_guide_says() {
     );
 }
 
-/// Whether a line is the one in a guide, numbers within 2 % of each other: they are the last digits of what noise leaves.
+/// Whether a line is the one in a guide, numbers within 2 % of each other: they are the last digits of what
+/// noise leaves.
 fn is_line_of_guide(guide: &str, line: &str) -> bool {
     let words = |text: &str| -> Vec<String> {
         text.split_whitespace().map(|word| word.trim_matches(['(', ')', ',', ';']).to_owned()).collect()

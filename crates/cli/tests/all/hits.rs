@@ -28,7 +28,8 @@ fn forces(bench: &Bench, points: &[&str], peaks: &[f64]) {
     bench.write("force.uff", jointscope::uff::write(&datasets).unwrap());
 }
 
-/// A bench with `plain.json`, and `hits.uff` that `simulate` makes of it with `physics`, with noise of 0.1 % of each signal's peak.
+/// A bench with `plain.json`, and `hits.uff` that `simulate` makes of it with `physics`, with noise of 0.1 %
+/// of each signal's peak.
 pub(crate) fn recorded(name: &str, physics: &str, peaks: &[f64]) -> Bench {
     let bench = Bench::new(name);
     bench.write("plain.json", fixture(""));

@@ -30,7 +30,8 @@ fn every_draft_reads_checks_and_synthesizes() {
 #[test]
 fn nothing_is_odd_in_what_a_frame_with_few_lines_between_its_modes_would_record() {
     let bench = Bench::new("init-frames");
-    // Modes from 2 Hz on, most of them narrower than lines are apart; FRFs that fall by eleven decades over the band.
+    // Modes from 2 Hz on, most of them narrower than lines are apart; FRFs that fall by eleven decades over
+    // the band.
     for (storeys, mass, columns) in
         [("3", "3.5", "200x25x5"), ("4", "2", "400x20x6"), ("5", "3.5", "400x20x6"), ("5", "8", "400x20x6")]
     {
@@ -161,7 +162,8 @@ fn nodes_that_all_lie_along_one_other_axis_are_told_the_one_map_entry_for_all() 
     assert!(bench.done(&[&init[..], &["--force"]].concat()).contains("`--map 2:+z=2:+y`"));
 }
 
-/// FRFs of two blocks with their geometry: nodes 1 to 4 along z, in mm, 1000 mm from where the fixture begins.
+/// FRFs of two blocks with their geometry: nodes 1 to 4 along z, in mm, 1000 mm from where the fixture
+/// begins.
 fn with_geometry(name: &str) -> Bench {
     let bench = Bench::new(name);
     bench.write("two.json", TWO_BLOCKS);

@@ -34,7 +34,8 @@ fn one_case_is_made_diagnosed_and_told_the_same_each_time() {
 #[test]
 fn solids_and_hits_have_scores_of_their_own_and_pages_that_diagnose_makes_again() {
     let bench = Bench::new("prove-routes");
-    // Of each the second hides nothing: the quickest. Where the model is wrong everywhere, what is answered to one case is left to chance; of such, seeds of quick cases.
+    // Of each the second hides nothing: the quickest. Where the model is wrong everywhere, what is answered
+    // to one case is left to chance; of such, seeds of quick cases.
     for (route, key, section, right, seed) in [
         ("--solid", "solid", "Recordings of solids", true, "1"),
         ("--struck", "struck", "Hits over time", true, "1"),
@@ -66,8 +67,9 @@ fn solids_and_hits_have_scores_of_their_own_and_pages_that_diagnose_makes_again(
             std::fs::copy(bench.0.join("proof/cases/001").join(file), bench.0.join(file)).unwrap();
         }
         assert!(!bench.text("fixture.json").contains("geometry"), "the solid stays under seal");
-        // The laboratory's FRFs come in another order than a file of them is read in: sums over them are rounded otherwise, which shows where no model is right to the
-        // noise, and another one may be held out.
+        // The laboratory's FRFs come in another order than a file of them is read in: sums over them are
+        // rounded otherwise, which shows where no model is right to the noise, and another one may be held
+        // out.
         if !matches!(key, "solid" | "struck" | "solid_as_is") {
             continue;
         }

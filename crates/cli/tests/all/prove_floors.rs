@@ -25,7 +25,8 @@ const fn none(path: &'static str, of: u64) -> Floor {
     Floor { path, least: 0, most: 0, of }
 }
 
-/// Scores of the 27 shipped cases. Each holds what was reached; where a share is not perfect, no less than that.
+/// Scores of the 27 shipped cases. Each holds what was reached; where a share is not perfect, no less than
+/// that.
 const FLOORS: [Floor; 23] = [
     all("/rates/nulls_consistent", 4),
     none("/rates/null_finding", 4),
@@ -65,7 +66,8 @@ fn the_shipped_cases_score_no_less_than_they_did_and_have_pages_from_which_anyon
     };
     keeps_its_floors(&serde_json::from_str(&prove("proof", &["--json", "--threads", "2"])).unwrap());
     let sections = |page: &str| bench.text(page).split("<footer>").next().unwrap().to_owned();
-    // A solid and hits that hide nothing and are quick: alone, and on another number of threads, they are the same.
+    // A solid and hits that hide nothing and are quick: alone, and on another number of threads, they are the
+    // same.
     let answers = bench.json("proof/answers.json");
     for (only, case) in [("21", 21), ("25", 25)] {
         let told = prove(only, &["--only", only, "--threads", "1"]);

@@ -1,4 +1,5 @@
-//! `jointscope prove --recordings` as a user meets it; the shipped hammer test stands in for a real recording.
+//! `jointscope prove --recordings` as a user meets it; the shipped hammer test stands in for a real
+//! recording.
 
 use crate::common::{Bench, TWO_BLOCKS};
 use jointscope::uff::FunctionType;

@@ -1,4 +1,5 @@
-//! The reference of result files: its commands run, its examples beside what they write, every key that is written described and every one described written.
+//! The reference of result files: its commands run, its examples beside what they write, every key that is
+//! written described and every one described written.
 
 use crate::common::Bench;
 use serde_json::Value;
@@ -44,7 +45,8 @@ impl Part {
         self.text.split('`').skip(1).step_by(2).collect()
     }
 
-    /// Keys of its tables that are there whatever was recorded: a row that says where, or with which option, promises less.
+    /// Keys of its tables that are there whatever was recorded: a row that says where, or with which option,
+    /// promises less.
     fn promised(&self) -> impl Iterator<Item = &str> {
         let rows = self.text.lines().filter_map(|line| line.strip_prefix("| `"));
         let always = rows.filter(|row| !row.contains(" where ") && !row.contains("with `--"));
@@ -76,7 +78,8 @@ fn bench() -> Bench {
     bench
 }
 
-/// Holds an example to what was written: all of its keys, the first items of its lists, its numbers as rounded.
+/// Holds an example to what was written: all of its keys, the first items of its lists, its numbers as
+/// rounded.
 fn check(example: &Value, written: &Value, place: &str) {
     match (example, written) {
         (Value::Object(example), Value::Object(_)) => {

@@ -1,5 +1,6 @@
-//! The built program on recordings, fixtures and joints that do not go together: one plain sentence with file, place and remedy, status 2, nothing
-//! written. What goes wrong within one file, by the hundred, is in `bad_inputs`.
+//! The built program on recordings, fixtures and joints that do not go together: one plain sentence with
+//! file, place and remedy, status 2, nothing written. What goes wrong within one file, by the hundred, is in
+//! `bad_inputs`.
 
 mod diagnoses;
 mod files;

@@ -39,7 +39,8 @@ fn a_diagnosis_comes_with_its_tables_curves_figures_and_the_frfs_of_its_models()
         let figure = bench.text(&format!("out/figures/{name}"));
         assert!(figure.starts_with("<?xml") && !figure.contains("var("), "{name}");
     }
-    // The curve of an FRF is its magnitude on every line, as measured and of each model; 3/1 is the first of all.
+    // The curve of an FRF is its magnitude on every line, as measured and of each model; 3/1 is the first of
+    // all.
     let curves = bench.text("out/curves/frfs-frf-3-1.csv");
     let head = curves.lines().next().unwrap();
     assert!(head.starts_with("Frequency [Hz],") && head.ends_with(",repaired [(m/s^2)/N]"), "{head}");

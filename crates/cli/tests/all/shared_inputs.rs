@@ -1,4 +1,5 @@
-//! Inputs that others made wrong, beside the workspace: each is refused in one sentence or answered, and what its flaw is stands in what is said.
+//! Inputs that others made wrong, beside the workspace: each is refused in one sentence or answered, and what
+//! its flaw is stands in what is said.
 
 use std::fs;
 use std::path::Path;

@@ -9,7 +9,8 @@ use serde_json::{Value, json};
 /// What a unit of the mass of block A does to K11 of either joint.
 const BY_MASS: f64 = 20.0;
 
-/// One test that reads J + 20 q and K + 20 q off scales of deviation 1, with q the mass of block A in standard deviations.
+/// One test that reads J + 20 q and K + 20 q off scales of deviation 1, with q the mass of block A in
+/// standard deviations.
 fn file(j: f64, k: f64) -> Value {
     let (s, own) = (BY_MASS, BY_MASS * BY_MASS);
     let zero = [[0.0; 2]; 2];

@@ -11,7 +11,8 @@ fn likelihood(elements: &[&str], at: &[f64]) -> Value {
     json!({"elements": elements, "at": at, "gradient": vec![0.0; at.len()], "information": unit})
 }
 
-/// A joint whose numbers are of the law `own`, with K11 and C11 of this and of another law, each to ±1; the quantity does nothing.
+/// A joint whose numbers are of the law `own`, with K11 and C11 of this and of another law, each to ±1; the
+/// quantity does nothing.
 fn by_law(own: (&str, f64, [f64; 2]), other: (&str, f64, [f64; 2])) -> Value {
     let mut file = file(own.2[0], 0.0, 5.0);
     let matrix = |value: f64| json!([[value, 0.0], [0.0, 0.0]]);
@@ -97,7 +98,8 @@ fn joints_of_other_exponents_follow_no_one_fractional_law() {
     let differ = found.pairs[0].laws_differ.as_ref().unwrap();
     assert_eq!((differ.first.as_str(), differ.second.as_str()), ("viscous", "structural"));
     assert!(found.law.is_none() && found.pairs[0].equality.is_none() && differ.one_law < 1e-9);
-    // Where the FRFs tell nothing of the exponents they may be the same: 2·0.1·0.1/(1 + 2·0.1·0.1) is below 0.05 still.
+    // Where the FRFs tell nothing of the exponents they may be the same: 2·0.1·0.1/(1 + 2·0.1·0.1) is below
+    // 0.05 still.
     let found = both(&[with_exponent(a, 0.97, 9.0), with_exponent(b, 0.03, 9.0)]);
     let one_law = found.pairs[0].laws_differ.as_ref().unwrap().one_law;
     assert!((one_law - 0.02 / 1.02).abs() < 1e-3, "{one_law}");
@@ -105,7 +107,8 @@ fn joints_of_other_exponents_follow_no_one_fractional_law() {
 
 #[test]
 fn tests_that_agree_on_the_blocks_by_one_law_do_not_contradict_each_other_by_another() {
-    // By the fractional law, a little more probable for both together, b would move the quantity by four deviations.
+    // By the fractional law, a little more probable for both together, b would move the quantity by four
+    // deviations.
     let a = by_law(("viscous", 0.58, [1000.0, 40.0]), ("fractional", 0.42, [1000.0, 40.0]));
     let mut b = by_law(("fractional", 0.6, [1000.0, 40.0]), ("viscous", 0.4, [1000.0, 40.0]));
     b["joint"]["likelihood"]["at"][2] = json!(8.0);
@@ -200,7 +203,8 @@ fn a_c_that_another_law_makes_give_out_energy_is_stated_where_it_just_does_not()
 
 #[test]
 fn slopes_that_differ_since_fits_end_at_other_places_of_one_valley_are_no_difference_of_joints() {
-    // K11 = 1000 + 2 q² is what the FRFs tell, q is not: fits that end at q = ±0.5 have slopes of ±2 and the same K11; by their own slopes K11 is 2 (q + 0.5) or −2 (q − 0.5) off.
+    // K11 = 1000 + 2 q² is what the FRFs tell, q is not: fits that end at q = ±0.5 have slopes of ±2 and the
+    // same K11; by their own slopes K11 is 2 (q + 0.5) or −2 (q − 0.5) off.
     let at = |q: f64| {
         let slope = -4.0 * q;
         let k11 = 1000.0 + 2.0 * q * q;

@@ -11,7 +11,8 @@ use jointscope_wording::Says;
 use jointscope_wording::comparison::{share, shared};
 use serde_json::{Value, json};
 
-/// A test that reads k11 + s·q off a scale of deviation 1, with q the mass of block A in standard deviations: J over (k11, q) is [[1, s], [s, s²]].
+/// A test that reads k11 + s·q off a scale of deviation 1, with q the mass of block A in standard deviations:
+/// J over (k11, q) is [[1, s], [s, s²]].
 fn file(k11: f64, by_mass: f64, stated: f64) -> Value {
     let zero = [[0.0; 2]; 2];
     let mut covariance = [[0.0; 6]; 6];
@@ -138,7 +139,8 @@ fn tests_that_contradict_each_other_on_the_blocks_are_not_taken_as_on_the_same()
     let near =
         compared(&[telling(1000.0, 0.5, 100.0), telling(1050.0, 0.7, 100.0)], &ComparisonOptions::default());
     assert!(near.is_sound() && near.together.shared.len() == 1);
-    // Each posterior has the variance 1/101 and (1 − S) of the prior: m₁ − m₂ = 0.2·100/101, of variance 2A − 2A².
+    // Each posterior has the variance 1/101 and (1 − S) of the prior: m₁ − m₂ = 0.2·100/101, of variance 2A −
+    // 2A².
     let a: f64 = 100.0 / 101.0;
     let z = 0.2 * a / (2.0 * a - 2.0 * a * a).sqrt();
     let expected = statrs::function::erf::erfc(z / 2f64.sqrt());
@@ -226,7 +228,8 @@ fn below(x: f64, mean: f64, std: f64) -> f64 {
     sum * step
 }
 
-/// Checks that the 95 % interval of the difference of K11 is that of a mixture of normal numbers: weight, mean and variance.
+/// Checks that the 95 % interval of the difference of K11 is that of a mixture of normal numbers: weight,
+/// mean and variance.
 fn is_of_mixture(found: &Comparison, parts: &[(f64, f64, f64)]) {
     let difference = found.pairs[0].number("K11").unwrap().difference;
     let share = |x: f64| parts.iter().map(|(w, mean, v)| w * below(x, *mean, v.sqrt())).sum::<f64>();
@@ -254,7 +257,8 @@ fn an_improbable_law_far_away_widens_an_interval_by_its_probability_and_not_by_i
         let [low, high] = found.pairs[0].number("K11").unwrap().difference.ci95;
         (high - low) / (2.0 * 1.959_963_985 * 2.0f64.sqrt())
     };
-    // With 1/82 it is off by 1000: the upper end leaves out 0.0128 in place of 0.025 of what the other law tells.
+    // With 1/82 it is off by 1000: the upper end leaves out 0.0128 in place of 0.025 of what the other law
+    // tells.
     let far = width(1000.0);
     assert!(far > 1.02 && far < 1.12, "{far}");
     assert!((width(1e6) - far).abs() < 1e-6);
@@ -303,7 +307,8 @@ fn joints_stated_by_a_law_that_they_follow_differ_from_the_other_laws_by_what_th
 
 #[test]
 fn joints_of_other_laws_keep_what_laws_change_in_each() {
-    // One is of a structural joint with 0.99, the other of a viscous one: one law for both has 2·2·0.99·0.01 against 1.
+    // One is of a structural joint with 0.99, the other of a viscous one: one law for both has 2·2·0.99·0.01
+    // against 1.
     let mut files = [with_laws(1000.0, 30.0, 0.99, "structural"), with_laws(1050.0, 32.0, 0.01, "viscous")];
     files[0]["joint"]["follows"] = json!({"law": "structural", "frequency": 100.0});
     files[1]["joint"]["laws"].as_array_mut().unwrap().reverse();
@@ -384,7 +389,8 @@ fn a_likelihood_of_no_number_or_of_one_twice_is_not_used() {
     }
 }
 
-/// The same with the abscissa of block A's point among what its fixture is not sure of, moved by the fit or not.
+/// The same with the abscissa of block A's point among what its fixture is not sure of, moved by the fit or
+/// not.
 fn with_point(mut file: Value, moved: bool) -> Value {
     let point = json!({"path": "points/1/x", "body": "A", "stated": 0.2, "std": 1e-4});
     if moved {

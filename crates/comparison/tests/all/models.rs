@@ -15,7 +15,8 @@ const SIM: Option<Source> = Some(Source::Simulation);
 const EXP: Option<Source> = Some(Source::Measurement);
 const FEM: Option<Source> = Some(Source::FiniteElements);
 
-/// Deviations of the difference are √2, the mass of the blocks in common cancelling: 1 % apart is seven of them.
+/// Deviations of the difference are √2, the mass of the blocks in common cancelling: 1 % apart is seven of
+/// them.
 fn three() -> [Value; 3] {
     [1010.0, 1000.0, 1000.5].map(|k11| file(k11, 20.0, 5.0))
 }

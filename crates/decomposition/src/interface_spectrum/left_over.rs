@@ -61,11 +61,13 @@ struct Held {
     determinant: ComplexMatrix2,
 }
 
-/// The compliance k⁻¹ of a joint that has a `mass` (kg, uniform over its length) besides; `None` where a matrix is singular.
+/// The compliance k⁻¹ of a joint that has a `mass` (kg, uniform over its length) besides; `None` where a
+/// matrix is singular.
 ///
-/// The mass adds s²M to the ends, so that their receptances without the joint's stiffness are G = (diag(α22, β33)⁻¹ + s²M)⁻¹. With T = [−R, I]
-/// and X = (k⁻¹ + T G Tᵀ)⁻¹ the motion at the ends is G − G Tᵀ X T G times the loads there, and
-/// β33 β43⁻¹ H41 α21⁻¹ α22 = G₃₂ − (G Tᵀ)₃ X (T G)₂, which is solved for X. Without a mass it is the exact relation.
+/// The mass adds s²M to the ends, so that their receptances without the joint's stiffness are G = (diag(α22,
+/// β33)⁻¹ + s²M)⁻¹. With T = [−R, I] and X = (k⁻¹ + T G Tᵀ)⁻¹ the motion at the ends is G − G Tᵀ X T G times
+/// the loads there, and β33 β43⁻¹ H41 α21⁻¹ α22 = G₃₂ − (G Tᵀ)₃ X (T G)₂, which is solved for X. Without a
+/// mass it is the exact relation.
 fn held_by_joint(spectrum: &JointSpectrum, line: usize, mass: f64) -> Option<Held> {
     let sides = &spectrum.sides;
     let (alpha22, beta33) = (sides.alpha22[line], sides.beta33[line]);
@@ -130,8 +132,8 @@ pub(super) struct LeftOver {
 }
 
 impl LeftOver {
-    /// A combination of D's elements by least squares under D12 = D21, weighted with the covariance of the noise: f − cov(f, e)/var(e)·e with
-    /// e = D12 − D21. Its variance is smaller by |cov(f, e)|²/var(e).
+    /// A combination of D's elements by least squares under D12 = D21, weighted with the covariance of the
+    /// noise: f − cov(f, e)/var(e)·e with e = D12 − D21. Its variance is smaller by |cov(f, e)|²/var(e).
     pub(super) fn reciprocal(&self, weights: Weights) -> LineCompliance {
         let (value, tolerance) = (combined(self.value, weights), Spread::default());
         let Some(noise) = &self.noise else { return LineCompliance { value, std: None, tolerance } };

@@ -8,7 +8,8 @@ use num_complex::Complex64;
 pub struct LineCompliance {
     /// The compliance.
     pub value: Complex64,
-    /// Standard deviation of its real and of its imaginary part by noise, which are independent; `None` where the FRFs carry no variances.
+    /// Standard deviation of its real and of its imaginary part by noise, which are independent; `None` where
+    /// the FRFs carry no variances.
     pub std: Option<f64>,
     /// What the fixture's tolerances and the joint's mass leave uncertain.
     pub tolerance: Spread,
@@ -41,7 +42,8 @@ impl LineCompliance {
         [self.tolerance.real.sqrt(), self.tolerance.imaginary.sqrt()]
     }
 
-    /// Standard deviations of the real and the imaginary part by noise and tolerances together; `None` where neither is known.
+    /// Standard deviations of the real and the imaginary part by noise and tolerances together; `None` where
+    /// neither is known.
     pub fn std_of_both(&self) -> Option<[f64; 2]> {
         let known = self.std.is_some() || self.tolerance != Spread::default();
         known.then(|| self.std_fixture().map(|std| std.hypot(self.std.unwrap_or(0.0))))
@@ -83,7 +85,8 @@ impl Spread {
     }
 }
 
-/// Magnitude of the real part that the lines beside this one show, a mean weighted with one over the variance; the line's own without neighbours or variances.
+/// Magnitude of the real part that the lines beside this one show, a mean weighted with one over the
+/// variance; the line's own without neighbours or variances.
 fn size_nearby(compliances: &[LineCompliance], at: usize) -> f64 {
     let near = at.saturating_sub(NEIGHBOURS)..compliances.len().min(at + NEIGHBOURS + 1);
     let (mut sum, mut weights) = (0.0, 0.0);
@@ -105,10 +108,12 @@ pub(crate) fn stiffness_and_damping(dynamic: Complex64, s: Complex64) -> (f64, f
     (dynamic.re - s.re * damping, damping)
 }
 
-/// One over a compliance at s; `None` where its real part cannot be told from zero well enough for the first-order deviations to hold.
+/// One over a compliance at s; `None` where its real part cannot be told from zero well enough for the
+/// first-order deviations to hold.
 ///
-/// Its noise is held against what the lines beside it show. Held against its own value, those lines would be stated on which noise happens to make it large,
-/// and their intervals would miss. The real part alone counts: losses of the beam by themselves make an imaginary one, and no spring.
+/// Its noise is held against what the lines beside it show. Held against its own value, those lines would be
+/// stated on which noise happens to make it large, and their intervals would miss. The real part alone
+/// counts: losses of the beam by themselves make an imaginary one, and no spring.
 pub(super) fn spring(compliances: &[LineCompliance], at: usize, s: Complex64) -> Option<LineSpring> {
     let compliance = compliances[at];
     let size = compliance.value.norm();

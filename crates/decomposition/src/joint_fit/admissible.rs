@@ -10,16 +10,19 @@ use jointscope_inference::{Covariance, NormalEquations, SIGNIFICANT};
 use serde::Serialize;
 use std::f64::consts::SQRT_2;
 
-/// Probabilities of FRFs that speak at least as much against a property, if the joint has it. Nothing where it cannot be tested.
+/// Probabilities of FRFs that speak at least as much against a property, if the joint has it. Nothing where
+/// it cannot be tested.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct JointTests {
-    /// k12 = k21, and the same of the damping matrix of the law that the joint follows: by how much χ² falls where they may differ, against χ² of two degrees of freedom (of
-    /// one for a law without damping).
+    /// k12 = k21, and the same of the damping matrix of the law that the joint follows: by how much χ² falls
+    /// where they may differ, against χ² of two degrees of freedom (of one for a law without damping).
     pub reciprocity: Option<f64>,
-    /// The smallest eigenvalue of k in the middle of the band is not negative: probability of one this low where the nearest k on the edge is true; of k in units of its
-    /// diagonal, since N/m and N·m/rad do not compare.
+    /// The smallest eigenvalue of k in the middle of the band is not negative: probability of one this low
+    /// where the nearest k on the edge is true; of k in units of its diagonal, since N/m and N·m/rad do not
+    /// compare.
     pub definite: Option<f64>,
-    /// The smallest eigenvalue of the law's damping matrix is not negative, in the same way and units; nothing for a law without damping.
+    /// The smallest eigenvalue of the law's damping matrix is not negative, in the same way and units;
+    /// nothing for a law without damping.
     pub passive: Option<f64>,
 }
 
@@ -47,8 +50,8 @@ pub struct Admissible {
     pub costs: f64,
 }
 
-/// P(a smallest eigenvalue as low as that of the symmetric or scalar matrix whose coordinates begin at `first` | zero). `noise` is the covariance with the fixture exact; variances
-/// count `inflation` times.
+/// P(a smallest eigenvalue as low as that of the symmetric or scalar matrix whose coordinates begin at
+/// `first` | zero). `noise` is the covariance with the fixture exact; variances count `inflation` times.
 pub(super) fn not_negative(
     form: Form,
     at: &[f64],
@@ -84,7 +87,8 @@ fn below_zero(value: f64, std: f64) -> Option<f64> {
 
 /// What is known of a joint whose k and c are free of symmetry.
 pub(super) enum Freed {
-    /// By how much it lowers χ² to first order, in the units of [`asymmetry`]: too little for its optimum to be sought.
+    /// By how much it lowers χ² to first order, in the units of [`asymmetry`]: too little for its optimum to
+    /// be sought.
     Promised(f64),
     /// Its optimum.
     Fitted(Point),
@@ -92,8 +96,8 @@ pub(super) enum Freed {
     Unknown,
 }
 
-/// The symmetric optimum of one joint, sought again from the free one for as long as that leads to another, lower one, and what is known of the free one: freedom goes round
-/// what keeps a symmetric fit on its way.
+/// The symmetric optimum of one joint, sought again from the free one for as long as that leads to another,
+/// lower one, and what is known of the free one: freedom goes round what keeps a symmetric fit on its way.
 ///
 /// `None` where an optimum has no derivatives.
 pub(super) fn settled(problem: &Problem, mut at: Fitted) -> Option<(Fitted, Freed)> {
@@ -127,8 +131,8 @@ fn asymmetric<'a>(problem: &Problem<'a>, joint: usize) -> Problem<'a> {
     problem.with_forms(laws)
 }
 
-/// The problem with k and c of a joint free of symmetry, its equations at a symmetric optimum, the step that they ask for, and by how much χ² falls, to first order;
-/// `None` for bodies that do not rotate.
+/// The problem with k and c of a joint free of symmetry, its equations at a symmetric optimum, the step that
+/// they ask for, and by how much χ² falls, to first order; `None` for bodies that do not rotate.
 fn freed<'a>(
     problem: &Problem<'a>,
     at: &Fitted,
@@ -150,7 +154,8 @@ pub(super) fn first_order_asymmetry(problem: &Problem, at: &Fitted, joint: usize
     freed(problem, at, joint).map(|(.., gain)| gain.max(0.0))
 }
 
-/// The gain by freedom of symmetry to first order, in the units of [`asymmetry`], where the FRFs are explained and it is too small for the optimum to be sought.
+/// The gain by freedom of symmetry to first order, in the units of [`asymmetry`], where the FRFs are
+/// explained and it is too small for the optimum to be sought.
 fn promised(problem: &Problem, at: &Fitted) -> Option<f64> {
     if problem.per_degree(&at.point) > EXPLAINED {
         return None;
@@ -173,8 +178,8 @@ fn reciprocity(problem: &Problem, symmetric: &Fitted) -> Option<Point> {
     refitted(problem, symmetric, vec![problem.laws[0].free()]).map(|(_, free)| free.point)
 }
 
-/// By how much χ² and priors fall where k and c of one joint may be unsymmetric, in units of what such a joint leaves of the FRFs and of the tolerances: what asymmetry
-/// explains is not taken for noise.
+/// By how much χ² and priors fall where k and c of one joint may be unsymmetric, in units of what such a
+/// joint leaves of the FRFs and of the tolerances: what asymmetry explains is not taken for noise.
 pub(super) fn asymmetry(problem: &Problem, symmetric: &Fitted, known: Freed) -> Option<f64> {
     let known = match known {
         Freed::Unknown => promised(problem, symmetric).map_or(Freed::Unknown, Freed::Promised),
@@ -212,7 +217,8 @@ pub(super) fn boundary(form: Form) -> Form {
     if form == Form::Scalar { Form::Zero } else { Form::RankOne }
 }
 
-/// The nearest joint that passes the tests that `failed`; `gain` is by how much χ² falls where k and c are free of symmetry.
+/// The nearest joint that passes the tests that `failed`; `gain` is by how much χ² falls where k and c are
+/// free of symmetry.
 pub(super) fn nearest(problem: &Problem, free: &Fitted, failed: &[&str], gain: f64) -> Option<Admissible> {
     if failed.is_empty() {
         return None;

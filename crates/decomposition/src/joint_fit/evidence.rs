@@ -1,12 +1,15 @@
 //! The evidence of a law whose losses, change of stiffness and mass may be of any size.
 //!
-//! Loss factors of joints lie anywhere between 10⁻⁴ and some tenths. One prior width for all of them charges a small one as if it had been expected to be large: a law with three
-//! more elements then loses to one without them although the FRFs show these. So the width σ of each kind of elements is itself unknown, as likely between 1 and 2 as between
-//! 10 and 20 within its limits, and the evidence is the mean over σ. A mass is not negative: its prior is the half of a normal distribution, and what of the posterior
-//! lies below zero does not count.
+//! Loss factors of joints lie anywhere between 10⁻⁴ and some tenths. One prior width for all of them charges
+//! a small one as if it had been expected to be large: a law with three more elements then loses to one
+//! without them although the FRFs show these. So the width σ of each kind of elements is itself unknown, as
+//! likely between 1 and 2 as between 10 and 20 within its limits, and the evidence is the mean over σ. A mass
+//! is not negative: its prior is the half of a normal distribution, and what of the posterior lies below zero
+//! does not count.
 //!
-//! About the optimum a of a fit under one prior P, −2 ln(likelihood × prior) is quadratic with the information A. With another prior P + Δ its minimum lies at a + y,
-//! (A + Δ) y = r − Δa, and is lower by (r − Δa)ᵀy − aᵀΔa, r being what pulls at a coordinate that stands at its bound.
+//! About the optimum a of a fit under one prior P, −2 ln(likelihood × prior) is quadratic with the
+//! information A. With another prior P + Δ its minimum lies at a + y, (A + Δ) y = r − Δa, and is lower by (r
+//! − Δa)ᵀy − aᵀΔa, r being what pulls at a coordinate that stands at its bound.
 
 use super::law::{Dynamics, Form};
 use crate::settings::priors::{CHANGE_RANGE, LOSS_RANGE, MASS_RANGE, WIDTHS};
@@ -29,8 +32,9 @@ pub(super) struct Fit<'a> {
 }
 
 impl Fit<'_> {
-    /// Logarithm of the marginal likelihood of this law, whose coordinates begin at `first`, with the coordinate of a mass where there is one. `variances` are those of all
-    /// priors, of what nothing is known of too. `None` where the FRFs leave it undetermined.
+    /// Logarithm of the marginal likelihood of this law, whose coordinates begin at `first`, with the
+    /// coordinate of a mass where there is one. `variances` are those of all priors, of what nothing is known
+    /// of too. `None` where the FRFs leave it undetermined.
     pub(super) fn evidence(
         &self,
         (first, law): (usize, &Dynamics),
@@ -123,7 +127,8 @@ mod tests {
         Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 }).with_precision(1.0 / (std * std))
     }
 
-    /// A scalar viscous joint whose k and c are read off with deviations of 0.01 and `noise`, fitted under a prior of 0.1 for c; and perhaps a mass.
+    /// A scalar viscous joint whose k and c are read off with deviations of 0.01 and `noise`, fitted under a
+    /// prior of 0.1 for c; and perhaps a mass.
     fn evidence(datum: f64, noise: f64, mass: Option<f64>) -> f64 {
         let unit = RealMatrix2::new(1.0, 1.0, 1.0, 1.0);
         let law = Dynamics::new(LawKind::Viscous, unit, 100.0, true);
@@ -148,7 +153,8 @@ mod tests {
         fit.evidence((0, &law), mass.map(|_| 2), &variances).unwrap()
     }
 
-    /// ln of the density of a datum of this noise whose mean is normal of this width, up to what does not depend on the width: 1/√2π and the noise's own 1/σ.
+    /// ln of the density of a datum of this noise whose mean is normal of this width, up to what does not
+    /// depend on the width: 1/√2π and the noise's own 1/σ.
     fn of_width(y: f64, sigma: f64, width: f64) -> f64 {
         let variance = sigma * sigma + width * width;
         -0.5 * (y * y / variance + (variance / (sigma * sigma)).ln())

@@ -14,24 +14,29 @@ use std::sync::Arc;
 pub struct JointFit {
     /// K of the law followed, in the middle of the band, symmetric: N/m, N/rad, N·m/rad.
     pub stiffness: RealMatrix2,
-    /// C of the law followed, there: Im(dynamic stiffness)/ω, ηK/ω of a structural one; symmetric and passive: N·s/m, N·s/rad, N·m·s/rad.
+    /// C of the law followed, there: Im(dynamic stiffness)/ω, ηK/ω of a structural one; symmetric and
+    /// passive: N·s/m, N·s/rad, N·m·s/rad.
     pub damping: RealMatrix2,
-    /// Posterior covariance of (k11, k12, k22, c11, c12, c22), the fixture's quantities integrated out; with what the model's error and the laws compared add.
+    /// Posterior covariance of (k11, k12, k22, c11, c12, c22), the fixture's quantities integrated out; with
+    /// what the model's error and the laws compared add.
     pub covariance: [[f64; 6]; 6],
-    /// The part of it that comes from the model's error: how far the joint moves when one of eight blocks of lines is left out. Zero where noise explains
-    /// what is left.
+    /// The part of it that comes from the model's error: how far the joint moves when one of eight blocks of
+    /// lines is left out. Zero where noise explains what is left.
     #[serde(skip)]
     pub model_covariance: [[f64; 6]; 6],
-    /// The part of it that comes from the laws compared: by how much they differ from the one followed in the middle of the band, each as often as it is probable.
+    /// The part of it that comes from the laws compared: by how much they differ from the one followed in the
+    /// middle of the band, each as often as it is probable.
     pub law_covariance: [[f64; 6]; 6],
     /// The joint's length between its ends where the fit has them.
     pub length: FittedLength,
     /// χ² and priors per degree of freedom: 1 where noise and tolerances explain the FRFs.
     pub chi2_per_dof: f64,
-    /// What the noise's variance was multiplied by because the model does not explain the FRFs; 1 where it does.
+    /// What the noise's variance was multiplied by because the model does not explain the FRFs; 1 where it
+    /// does.
     #[serde(skip)]
     pub inflation: f64,
-    /// What the posterior covariance was multiplied by because the fixture's quantities are farther from what is stated than chance takes them; 1 where they are not.
+    /// What the posterior covariance was multiplied by because the fixture's quantities are farther from what
+    /// is stated than chance takes them; 1 where they are not.
     #[serde(skip)]
     pub tolerance_inflation: f64,
     /// Whether c would give out energy if it were free, and was held to c = v vᵀ.
@@ -59,23 +64,27 @@ pub struct JointFit {
     /// The same FRFs as measured and as fitted.
     #[serde(skip)]
     pub fitted: Arc<FittedFrfs>,
-    /// The joint's own mass and its standard deviation, kg, where the law followed has one; k and c are those of a joint with it.
+    /// The joint's own mass and its standard deviation, kg, where the law followed has one; k and c are those
+    /// of a joint with it.
     #[serde(skip_serializing_if = "Option::is_none", serialize_with = "uncertain")]
     pub mass: Option<(f64, f64)>,
     /// Whether the bodies do not rotate: only the elements (1,1) mean anything then.
     #[serde(skip)]
     pub scalar: bool,
-    /// What the FRFs alone tell of the joint and of the quantities; nothing where they leave the joint's mass open.
+    /// What the FRFs alone tell of the joint and of the quantities; nothing where they leave the joint's mass
+    /// open.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub likelihood: Option<JointLikelihood>,
 }
 
-/// The law that a joint's numbers are of: the most probable one, or a viscous one where laws were not compared.
+/// The law that a joint's numbers are of: the most probable one, or a viscous one where laws were not
+/// compared.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Followed {
     /// Which.
     pub law: LawKind,
-    /// The law itself where the joint's numbers are; its probability is that among the laws compared, 1 where they were not.
+    /// The law itself where the joint's numbers are; its probability is that among the laws compared, 1 where
+    /// they were not.
     pub fit: LawFit,
     /// Circular frequency in the middle of the band, at which K and C are stated, rad/s.
     pub omega: f64,
@@ -97,7 +106,8 @@ pub struct FittedFrfs {
 pub struct FittedQuantity {
     /// Path in the fixture file.
     pub path: String,
-    /// The body that it belongs to, by itself or as a place on it; nothing for supports, damping, channels and other joints.
+    /// The body that it belongs to, by itself or as a place on it; nothing for supports, damping, channels
+    /// and other joints.
     pub body: Option<String>,
     /// As stated, SI.
     pub stated: f64,
@@ -146,8 +156,9 @@ impl JointFit {
         self.inflation == 1.0 && self.tolerance_inflation == 1.0
     }
 
-    /// The loss factor ωC/K of an element in the middle of the band and its standard deviation, with that of all that [`covariance`](Self::covariance) holds; nothing for an
-    /// element of K that is zero, and of a law without damping.
+    /// The loss factor ωC/K of an element in the middle of the band and its standard deviation, with that of
+    /// all that [`covariance`](Self::covariance) holds; nothing for an element of K that is zero, and of a
+    /// law without damping.
     pub fn loss_factor(&self, row: usize, column: usize) -> Option<(f64, f64)> {
         let (k, c) = (self.stiffness.at(row, column), self.damping.at(row, column));
         if k == 0.0 || self.follows.law == LawKind::Constant || (self.scalar && row + column > 0) {

@@ -6,8 +6,8 @@ use num_complex::Complex64;
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_2;
 
-/// How a joint's stiffness and damping depend on frequency. D, K₁ are symmetric matrices of their own, so that every law holds a proportional
-/// one and any other distribution of the losses over the elements.
+/// How a joint's stiffness and damping depend on frequency. D, K₁ are symmetric matrices of their own, so
+/// that every law holds a proportional one and any other distribution of the losses over the elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LawKind {
@@ -161,7 +161,8 @@ impl Dynamics {
         usize::from(matches!(self.kind, LawKind::StandardLinearSolid | LawKind::Fractional))
     }
 
-    /// Which of k11, k12, k22, c11, c12, c22 in the middle of the band its first coordinates are, in their order.
+    /// Which of k11, k12, k22, c11, c12, c22 in the middle of the band its first coordinates are, in their
+    /// order.
     pub(super) fn slots(&self) -> &'static [usize] {
         match (self.stiffness == Form::Scalar, self.damping == Form::Zero) {
             (true, true) => &[0],
@@ -188,7 +189,8 @@ impl Dynamics {
         )
     }
 
-    /// K and the damping matrix as an imaginary stiffness, both in the middle of the band; K₁·ω there. N/m and so on.
+    /// K and the damping matrix as an imaginary stiffness, both in the middle of the band; K₁·ω there. N/m
+    /// and so on.
     pub(super) fn matrices(&self, at: &[f64]) -> [RealMatrix2; 3] {
         let [k, d, l, _] = self.split(at);
         [self.stiffness.matrix(k), self.damping.matrix(d), self.change.matrix(l)].map(|m| self.in_units(m))
@@ -212,7 +214,8 @@ impl Dynamics {
         Complex64::from(s.im / self.middle - 1.0)
     }
 
-    /// What the damping matrix is multiplied by: i in the middle of the band, so that K is the stiffness there and a change of time or exponent leaves it.
+    /// What the damping matrix is multiplied by: i in the middle of the band, so that K is the stiffness
+    /// there and a change of time or exponent leaves it.
     fn losses(&self, s: Complex64, shape: f64) -> Complex64 {
         let relative = s / self.middle;
         match self.kind {
@@ -230,7 +233,8 @@ impl Dynamics {
         }
     }
 
-    /// By how much less than K in the middle of the band the law's own K is, as a share of the damping matrix.
+    /// By how much less than K in the middle of the band the law's own K is, as a share of the damping
+    /// matrix.
     pub(super) fn stiffening(&self, at: &[f64]) -> f64 {
         let [.., shape] = self.split(at);
         match (self.kind, shape.first()) {
@@ -240,7 +244,8 @@ impl Dynamics {
         }
     }
 
-    /// What the damping matrix in units of stiffness is multiplied by to be the law's own: C, H, D of the solid, D of the springpot.
+    /// What the damping matrix in units of stiffness is multiplied by to be the law's own: C, H, D of the
+    /// solid, D of the springpot.
     pub(super) fn own_damping(&self, at: &[f64]) -> f64 {
         let [.., shape] = self.split(at);
         match (self.kind, shape.first()) {
@@ -286,7 +291,8 @@ impl Placed<'_> {
         Matrix2::new(at(0, 0), at(0, 1), at(1, 0), at(1, 1))
     }
 
-    /// Losses at s, their derivative by the law's time or exponent, and what K₁ is multiplied by: what derivatives need of lines.
+    /// Losses at s, their derivative by the law's time or exponent, and what K₁ is multiplied by: what
+    /// derivatives need of lines.
     #[inline(always)]
     pub(super) fn factors<T: Lines>(&self, s: &[Complex64]) -> [T; 3] {
         const STEP: f64 = 1e-5;
@@ -301,7 +307,8 @@ impl Placed<'_> {
         [losses, by_shape, on_lines(s, |s| self.law.change(s))]
     }
 
-    /// Writes derivatives by the coordinates over `slots`, from those by the elements (11, 12, 21, 22) of the dynamic stiffness.
+    /// Writes derivatives by the coordinates over `slots`, from those by the elements (11, 12, 21, 22) of the
+    /// dynamic stiffness.
     #[inline(always)]
     pub(super) fn chain<T: Lines>(&self, by: [T; 4], [losses, by_shape, relative]: [T; 3], slots: &mut [T]) {
         let u = &self.law.unit;

@@ -35,7 +35,8 @@ pub struct LawFit {
     pub shape: Option<f64>,
     /// Standard deviation of it, where the FRFs determine the law.
     pub shape_std: Option<f64>,
-    /// What the FRFs tell of its K and C in the middle of the band, of a law that the joint's numbers are not of: for a comparison with joints that follow it. Nothing of improbable laws.
+    /// What the FRFs tell of its K and C in the middle of the band, of a law that the joint's numbers are not
+    /// of: for a comparison with joints that follow it. Nothing of improbable laws.
     pub likelihood: Option<JointLikelihood>,
     law: Dynamics,
     coordinates: Vec<f64>,
@@ -47,7 +48,8 @@ impl LawFit {
         self.probability >= CERTAIN
     }
 
-    /// The same as one of the laws beside that of the joint's numbers, `stated`, with noise whose variance counts `inflation` times.
+    /// The same as one of the laws beside that of the joint's numbers, `stated`, with noise whose variance
+    /// counts `inflation` times.
     pub(super) fn beside(mut self, stated: (LawKind, bool), inflation: f64) -> Self {
         let is_stated = (self.kind, self.mass.is_some()) == stated;
         self.likelihood =
@@ -99,7 +101,8 @@ impl LawFit {
     }
 }
 
-/// By how much the laws compared, each as often as it is probable, are off the one that the headline follows in the middle of the band.
+/// By how much the laws compared, each as often as it is probable, are off the one that the headline follows
+/// in the middle of the band.
 pub(super) struct Spread {
     /// Mean products of the differences in (k11, k12, k22, c11, c12, c22).
     pub covariance: [[f64; 6]; 6],
@@ -108,7 +111,8 @@ pub(super) struct Spread {
 }
 
 impl Spread {
-    /// `kind`, `heavy`: the law that the headline follows and whether with mass. Nothing where it is not among the laws.
+    /// `kind`, `heavy`: the law that the headline follows and whether with mass. Nothing where it is not
+    /// among the laws.
     pub(super) fn of(laws: &[LawFit], kind: LawKind, heavy: bool) -> Option<Self> {
         let stated = laws.iter().find(|fit| fit.kind == kind && fit.mass.is_some() == heavy)?;
         let six = |fit: &LawFit| {
@@ -140,8 +144,9 @@ pub(super) struct Candidate {
     pub at: Vec<f64>,
 }
 
-/// All laws of one joint with and without mass (in units of `scale`), the most probable first. `viscous` is that law at its optimum, `heavy` the same with mass where that is
-/// known. After them the coordinates of the first.
+/// All laws of one joint with and without mass (in units of `scale`), the most probable first. `viscous` is
+/// that law at its optimum, `heavy` the same with mass where that is known. After them the coordinates of the
+/// first.
 pub(super) fn compared(
     viscous: (&Problem, &Fitted),
     heavy: Option<(&Problem, &Fitted)>,
@@ -189,7 +194,8 @@ fn most_evidence<'a>(all: impl Iterator<Item = &'a Candidate>) -> f64 {
     all.map(|candidate| candidate.evidence).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Every law of a joint without mass, the most probable first; those that are far from the nearest are fitted in few steps.
+/// Every law of a joint without mass, the most probable first; those that are far from the nearest are fitted
+/// in few steps.
 fn without_mass(viscous: &Problem, first: &Fitted) -> Vec<Candidate> {
     let own = viscous.laws[0];
     let starts: Vec<(Dynamics, Vec<f64>, f64)> = LawKind::ALL
@@ -264,7 +270,8 @@ fn with_mass(
     heavy
 }
 
-/// The start of a law from which the viscous joint is imitated best, and what χ² it promises, up to what all laws have in common.
+/// The start of a law from which the viscous joint is imitated best, and what χ² it promises, up to what all
+/// laws have in common.
 fn nearest_start(viscous: &Problem, first: &Fitted, law: &Dynamics) -> Option<(Vec<f64>, f64)> {
     let shapes: &[f64] = match law.kind {
         LawKind::StandardLinearSolid => &[-2.0, -1.0, 0.0, 1.0, 2.0],
@@ -297,8 +304,8 @@ fn variances(parameters: &[Parameter]) -> Vec<f64> {
 }
 
 impl Candidate {
-    /// The law of the one joint, its fit gone on with until it has converged by derivatives taken there: evidence is of optima, and one that is missed by ten in χ² decides
-    /// between laws.
+    /// The law of the one joint, its fit gone on with until it has converged by derivatives taken there:
+    /// evidence is of optima, and one that is missed by ten in χ² decides between laws.
     fn converged(problem: &Problem, fitted: Fitted) -> Option<Self> {
         Candidate::of(problem, &fitted.or_from_afar(problem)?, 0)
     }

@@ -23,7 +23,8 @@ fn root<S: Serializer>(variance: &f64, serializer: S) -> Result<S::Ok, S::Error>
     variance.max(0.0).sqrt().serialize(serializer)
 }
 
-/// A joint's length, to which K is tied by the ends' places: from the quantities and all coordinates, of which the first `own` are not quantities', and K's begin at `first`.
+/// A joint's length, to which K is tied by the ends' places: from the quantities and all coordinates, of
+/// which the first `own` are not quantities', and K's begin at `first`.
 pub(super) fn length_between(
     (fixture, joint): (&Fixture, &Joint),
     (quantities, coordinates): (&[Tolerance], &[f64]),

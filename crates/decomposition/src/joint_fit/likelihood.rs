@@ -1,5 +1,6 @@
-//! What the FRFs alone tell of joints and of the fixture's quantities: two joints on the same blocks share these, and only with the likelihood of both, their prior
-//! entering once, is the difference of the joints as well known as it is.
+//! What the FRFs alone tell of joints and of the fixture's quantities: two joints on the same blocks share
+//! these, and only with the likelihood of both, their prior entering once, is the difference of the joints as
+//! well known as it is.
 
 use super::law::Dynamics;
 use super::uncertainty::units;
@@ -9,12 +10,14 @@ use serde::Serialize;
 /// Names of the six numbers of a joint.
 pub(super) const ELEMENTS: [&str; 6] = ["k11", "k12", "k22", "c11", "c12", "c22"];
 
-/// The likelihood of joints' numbers and of the fixture's quantities, Gaussian about a point, without the quantities' priors; a joint's mass, if it has one, is
-/// integrated out. c is free of constraints in it.
+/// The likelihood of joints' numbers and of the fixture's quantities, Gaussian about a point, without the
+/// quantities' priors; a joint's mass, if it has one, is integrated out. c is free of constraints in it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct JointLikelihood {
-    /// The joints' numbers, SI: `k11` of one joint, `J1/k11` of several; after them come the coordinates of [`JointFit::quantities`](super::JointFit::quantities): standard
-    /// deviations from what is stated (tenths of it where its deviation is unknown), of ln(value) where a positive quantity is known to 12 % or better.
+    /// The joints' numbers, SI: `k11` of one joint, `J1/k11` of several; after them come the coordinates of
+    /// [`JointFit::quantities`](super::JointFit::quantities): standard deviations from what is stated (tenths
+    /// of it where its deviation is unknown), of ln(value) where a positive quantity is known to 12 % or
+    /// better.
     pub elements: Vec<String>,
     /// Where it is taken.
     pub at: Vec<f64>,
@@ -52,8 +55,9 @@ impl JointLikelihood {
         self
     }
 
-    /// From the normal equations at an optimum with c free: of these numbers and of the quantities, whose coordinates begin at `own`; what is neither is
-    /// integrated out. Nothing where the FRFs leave that undetermined.
+    /// From the normal equations at an optimum with c free: of these numbers and of the quantities, whose
+    /// coordinates begin at `own`; what is neither is integrated out. Nothing where the FRFs leave that
+    /// undetermined.
     pub(super) fn of(
         numbers: &[NamedCoordinate],
         own: usize,
@@ -63,7 +67,8 @@ impl JointLikelihood {
     ) -> Option<Self> {
         let precision = |m: usize| parameters[m].precision;
         let mut all = QuadraticLikelihood::without_priors(equations, coordinates, precision);
-        // At the optimum data and priors pull against each other. That derivatives by differences give a little more or less must not move the joint.
+        // At the optimum data and priors pull against each other. That derivatives by differences give a
+        // little more or less must not move the joint.
         let gradient_of_priors = coordinates.iter().enumerate().map(|(m, at)| precision(m) * at);
         all.gradient = gradient_of_priors.collect();
         let kept: Vec<usize> =

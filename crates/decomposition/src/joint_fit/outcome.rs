@@ -166,7 +166,8 @@ fn as_compared(mut stated: LawFit, laws: &[LawFit]) -> LawFit {
 }
 
 impl Outcome<'_> {
-    /// From the optimum with every c free. `asymmetry` tells by how much χ² falls where k and the damping matrix of a joint may be unsymmetric, variances counting so many times.
+    /// From the optimum with every c free. `asymmetry` tells by how much χ² falls where k and the damping
+    /// matrix of a joint may be unsymmetric, variances counting so many times.
     pub(super) fn of(
         self,
         free: &Fitted,
@@ -238,7 +239,8 @@ impl Outcome<'_> {
         })
     }
 
-    /// A joint by its place among those that are looked for; `asymmetry` is by how much χ² falls where its k and damping matrix may be unsymmetric.
+    /// A joint by its place among those that are looked for; `asymmetry` is by how much χ² falls where its k
+    /// and damping matrix may be unsymmetric.
     fn joint(&self, place: usize, free: &Free, stated: &Stated, asymmetry: Option<f64>) -> JointFit {
         let (problem, setup) = (self.problem, self.problem.test.setup);
         let (first, law) = problem.places().nth(place).unwrap_or((0, &problem.laws[0]));
@@ -312,7 +314,8 @@ impl Outcome<'_> {
         self.problem.places().enumerate().flat_map(of_joint).collect()
     }
 
-    /// The optimum with every c that would give out energy held to v vᵀ, in free coordinates, if there is such a c, and which joints are passive without.
+    /// The optimum with every c that would give out energy held to v vᵀ, in free coordinates, if there is
+    /// such a c, and which joints are passive without.
     fn held(&self, free: &Fitted) -> Result<(Option<Fitted>, Vec<bool>), SeveralError> {
         let problem = self.problem;
         let mut passive = vec![true; problem.laws.len()];
@@ -354,7 +357,8 @@ impl Outcome<'_> {
         test.quantities.iter().enumerate().map(of).collect()
     }
 
-    /// What the FRFs alone tell of these numbers and of the quantities, other joints, a mass and the rest of the laws integrated out.
+    /// What the FRFs alone tell of these numbers and of the quantities, other joints, a mass and the rest of
+    /// the laws integrated out.
     fn likelihood(
         &self,
         numbers: impl Iterator<Item = NamedCoordinate>,

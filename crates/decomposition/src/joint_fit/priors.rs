@@ -22,7 +22,8 @@ pub(super) fn own_parameters(law: &Dynamics) -> Vec<Parameter> {
     all
 }
 
-/// The same with nothing known of the matrices beforehand: a time or an exponent that no loss shows would else be anywhere.
+/// The same with nothing known of the matrices beforehand: a time or an exponent that no loss shows would
+/// else be anywhere.
 pub(super) fn open_parameters(law: &Dynamics) -> Vec<Parameter> {
     let open = Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 });
     let mut all = vec![open; law.count() - law.shapes()];

@@ -1,4 +1,5 @@
-//! The fit itself: the coordinates of every joint's law, perhaps the first joint's mass, and the fixture's uncertain quantities.
+//! The fit itself: the coordinates of every joint's law, perhaps the first joint's mass, and the fixture's
+//! uncertain quantities.
 
 use super::law::{Dynamics, Placed, coordinates};
 use super::priors::{mass_parameter, open_parameters, own_parameters};
@@ -62,7 +63,8 @@ pub(super) struct Fitted {
 }
 
 impl Fitted {
-    /// Takes the derivatives by the quantities at the optimum, which those of the fit were taken near, and goes on where they promise more.
+    /// Takes the derivatives by the quantities at the optimum, which those of the fit were taken near, and
+    /// goes on where they promise more.
     ///
     /// `None` where there are none.
     pub(super) fn refresh(&mut self, problem: &Problem) -> Option<()> {
@@ -85,8 +87,9 @@ impl Fitted {
         problem.equations_of(&self.point, &self.others, problem.test.weights)
     }
 
-    /// This fit or a lower one, sought once more from the fixture as stated by stages, where this one creeps: a law that was refuted has bent the quantities, and from there a valley leads to
-    /// the optimum which steps follow by tenths.
+    /// This fit or a lower one, sought once more from the fixture as stated by stages, where this one creeps:
+    /// a law that was refuted has bent the quantities, and from there a valley leads to the optimum which
+    /// steps follow by tenths.
     pub(super) fn or_from_afar(mut self, problem: &Problem) -> Option<Self> {
         self.refresh(problem)?;
         if problem.promised(&self.point, &self.equations(problem)) < CREEPS {
@@ -113,7 +116,8 @@ pub(super) fn lower(a: Fitted, b: Fitted) -> Fitted {
 }
 
 impl<'a> Problem<'a> {
-    /// Joints of whose stiffness and losses nothing is known beforehand, with a mass of the first if there is a scale for it (kg).
+    /// Joints of whose stiffness and losses nothing is known beforehand, with a mass of the first if there is
+    /// a scale for it (kg).
     pub(super) fn open(test: Test<'a>, laws: Vec<Dynamics>, mass: Option<f64>) -> Self {
         let own = laws.iter().flat_map(open_parameters).collect();
         Problem::of(test, laws, mass, own)
@@ -176,7 +180,8 @@ impl<'a> Problem<'a> {
         all
     }
 
-    /// Coordinates of the same joints and fixture where K and the damping matrix of the same laws have other forms.
+    /// Coordinates of the same joints and fixture where K and the damping matrix of the same laws have other
+    /// forms.
     pub(super) fn converted(&self, at: &[f64], laws: &[Dynamics]) -> Vec<f64> {
         let own = self.places().zip(laws).flat_map(|((first, law), other)| {
             let own = &at[first..first + law.count()];
@@ -254,8 +259,9 @@ impl<'a> Problem<'a> {
         self.point(coordinates, Some(&at.uncoupled))
     }
 
-    /// Coordinates of `law` by which it comes nearest to what the one joint's law here does at a point, with what that leaves of the FRFs: the FRFs are taken
-    /// as linear in the dynamic stiffness, so that resonances weigh most. K, damping matrix and K₁ alone; `shape` is the law's time or exponent.
+    /// Coordinates of `law` by which it comes nearest to what the one joint's law here does at a point, with
+    /// what that leaves of the FRFs: the FRFs are taken as linear in the dynamic stiffness, so that
+    /// resonances weigh most. K, damping matrix and K₁ alone; `shape` is the law's time or exponent.
     pub(super) fn imitated(&self, at: &Point, law: &Dynamics, shape: f64) -> Option<(Vec<f64>, f64)> {
         let recorded = self.test.setup.recorded;
         let mut columns = self.own_columns(at);
@@ -309,7 +315,8 @@ impl<'a> Problem<'a> {
         Some(Fitted { point: end.point, others: end.derivatives })
     }
 
-    /// A fit by stages in which less and less of the signal counts as noise, so that sharp resonances do not decide where it goes.
+    /// A fit by stages in which less and less of the signal counts as noise, so that sharp resonances do not
+    /// decide where it goes.
     pub(super) fn searched(&self, start: Vec<f64>) -> Option<Fitted> {
         let mut at = start;
         for share in SIGNAL_AS_NOISE {
@@ -329,7 +336,8 @@ impl<'a> Problem<'a> {
         self.test.setup.recorded.per_degree(point.objective, self.own(), &self.parameters)
     }
 
-    /// What the noise is multiplied by so that it explains what is left, correlated from line to line as that is.
+    /// What the noise is multiplied by so that it explains what is left, correlated from line to line as that
+    /// is.
     pub(super) fn inflation(&self, point: &Point) -> f64 {
         self.test.setup.recorded.inflation(self.per_degree(point), &point.predicted)
     }

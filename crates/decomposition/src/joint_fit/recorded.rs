@@ -1,4 +1,5 @@
-//! The FRFs that a joint is fitted to: every one whose channels the fixture has, as accelerances with weights.
+//! The FRFs that a joint is fitted to: every one whose channels the fixture has, as accelerances with
+//! weights.
 
 use crate::settings::noise::{EXPLAINED, UNKNOWN_NOISE};
 use jointscope_averaging::Band;
@@ -21,7 +22,8 @@ pub(super) struct Recorded {
     pub values: Vec<Complex64>,
     /// 2/σ²; zero where a value says nothing.
     pub weights: Vec<f64>,
-    /// (response, reference) of each FRF among the distinct channels, and one FRF that each channel is taken from.
+    /// (response, reference) of each FRF among the distinct channels, and one FRF that each channel is taken
+    /// from.
     pub channels: Vec<(usize, usize)>,
     pub responses: Vec<usize>,
     pub references: Vec<usize>,
@@ -119,7 +121,8 @@ impl Recorded {
         values.map(|(value, weight)| inflated_weight(*weight, value.norm_sqr(), share)).collect()
     }
 
-    /// An objective over what is left of the values by parameters, the first `own` of which are not the fixture's.
+    /// An objective over what is left of the values by parameters, the first `own` of which are not the
+    /// fixture's.
     pub(super) fn per_degree(&self, objective: f64, own: usize, parameters: &[Parameter]) -> f64 {
         // Priors count one degree for each quantity that has one.
         let quantities = parameters.iter().skip(own);
@@ -127,7 +130,8 @@ impl Recorded {
         objective / self.degrees().saturating_sub(free).max(1) as f64
     }
 
-    /// What the noise is multiplied by so that it explains what is left, correlated from line to line as that is.
+    /// What the noise is multiplied by so that it explains what is left, correlated from line to line as that
+    /// is.
     pub(super) fn inflation(&self, per_degree: f64, predicted: &[Complex64]) -> f64 {
         if per_degree <= EXPLAINED {
             return 1.0;

@@ -1,11 +1,14 @@
 //! Several joints at once from all FRFs, the fixture's quantities moving within their tolerances.
 //!
-//! The relation between the FRFs across one joint and that joint needs two sides that it alone connects. A fit needs none: every joint acts on its own d, whatever
-//! else connects its ends. So joints of a chain are found together, each without being told of the others, and those of a loop at all. Two joints between the
-//! same two rigid bodies act on one relative motion, of which only the sum of both can be told: they are refused by name.
+//! The relation between the FRFs across one joint and that joint needs two sides that it alone connects. A
+//! fit needs none: every joint acts on its own d, whatever else connects its ends. So joints of a chain are
+//! found together, each without being told of the others, and those of a loop at all. Two joints between the
+//! same two rigid bodies act on one relative motion, of which only the sum of both can be told: they are
+//! refused by name.
 //!
-//! k, c and the quantities have one posterior: what is not known of a block moves the joints on both of its sides, and their covariance says so. Losses are the joints'
-//! own, as for one joint; modal ratios of the whole, which mix joints, are read as each joint's own c.
+//! k, c and the quantities have one posterior: what is not known of a block moves the joints on both of its
+//! sides, and their covariance says so. Losses are the joints' own, as for one joint; modal ratios of the
+//! whole, which mix joints, are read as each joint's own c.
 
 mod found;
 mod laws;
@@ -29,12 +32,15 @@ use jointscope_frf::{KnownNoise, RigidMotionError};
 use jointscope_linalg::RealMatrix2;
 use jointscope_spectra::FrfSet;
 
-/// Fits the joints named, or all of the fixture's, to every FRF whose channels the fixture has. Joints that are not named move within their tolerances.
+/// Fits the joints named, or all of the fixture's, to every FRF whose channels the fixture has. Joints that
+/// are not named move within their tolerances.
 ///
-/// Variances are estimated from coherence and averages where the set has them, from its scatter elsewhere; those that it carries already are kept.
+/// Variances are estimated from coherence and averages where the set has them, from its scatter elsewhere;
+/// those that it carries already are kept.
 ///
-/// It starts from the fixture's own joints; where χ² per degree of freedom stays above 1.3, stages follow in which 100, 30, 6 and 1 % of the signal count as noise, from
-/// the fixture's joints, from half and from twice their stiffness.
+/// It starts from the fixture's own joints; where χ² per degree of freedom stays above 1.3, stages follow in
+/// which 100, 30, 6 and 1 % of the signal count as noise, from the fixture's joints, from half and from twice
+/// their stiffness.
 ///
 /// # Errors
 /// See [`SeveralError`].
@@ -154,7 +160,8 @@ fn scalars(fixture: &Fixture, joints: &[usize]) -> Result<Vec<bool>, SeveralErro
     joints.iter().map(scalar).collect()
 }
 
-/// Joints between the same two rigid pieces: without the joints that are looked for, bodies that cannot move against each other but as two rigid bodies.
+/// Joints between the same two rigid pieces: without the joints that are looked for, bodies that cannot move
+/// against each other but as two rigid bodies.
 fn refuse_parallel(fixture: &Fixture, joints: &[usize]) -> Result<(), SeveralError> {
     let is_rigid = |body: usize| matches!(fixture.bodies()[body].kind, BodyKind::Rigid(_));
     for (place, &a) in joints.iter().enumerate() {
@@ -187,7 +194,8 @@ fn is_in_a_loop(fixture: &Fixture, joint: usize) -> bool {
     pieces[a] == pieces[b]
 }
 
-/// Which piece of the fixture each body is in, numbered from 0: joints and springs from body to body hold pieces together.
+/// Which piece of the fixture each body is in, numbered from 0: joints and springs from body to body hold
+/// pieces together.
 fn connected(fixture: &Fixture) -> Vec<usize> {
     let joints =
         fixture.joints().iter().map(|joint| [joint.from, joint.to].map(|p| fixture.points()[p].body));
@@ -222,7 +230,8 @@ fn lowest(problem: &Problem, start: &dyn Fn(f64) -> Vec<f64>) -> Option<Fitted> 
     best.filter(|best| best.point.objective.is_finite())
 }
 
-/// Whether noise explains the FRFs with a fixture that is about what is stated: where neither noise nor tolerances bind, a fit may end far from both.
+/// Whether noise explains the FRFs with a fixture that is about what is stated: where neither noise nor
+/// tolerances bind, a fit may end far from both.
 fn is_plausible(problem: &Problem, point: &Point) -> bool {
     let own = problem.own();
     let known = problem.parameters[own..].iter().zip(&point.coordinates[own..]);

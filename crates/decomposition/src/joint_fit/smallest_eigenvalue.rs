@@ -1,14 +1,18 @@
-//! The probability of a smallest eigenvalue as low as that of a matrix found, if the true matrix lies on the edge of what has none below zero.
+//! The probability of a smallest eigenvalue as low as that of a matrix found, if the true matrix lies on the
+//! edge of what has none below zero.
 //!
-//! The smallest eigenvalue λ of a noisy matrix is no normal number: what other elements scatter turns the eigenvector and takes λ down, whatever is true, most where the
-//! other eigenvalue is not much larger than the noise. So it is not λ over its deviation that is asked for, but P(λ(M₀ + e) ≤ λ found), e normal with the covariance of the elements and M₀ = v vᵀ the
-//! matrix on the edge that is nearest to the one found.
+//! The smallest eigenvalue λ of a noisy matrix is no normal number: what other elements scatter turns the
+//! eigenvector and takes λ down, whatever is true, most where the other eigenvalue is not much larger than
+//! the noise. So it is not λ over its deviation that is asked for, but P(λ(M₀ + e) ≤ λ found), e normal with
+//! the covariance of the elements and M₀ = v vᵀ the matrix on the edge that is nearest to the one found.
 //!
-//! Adding s to both diagonal elements adds s to λ. With s the part of e along the unit matrix that is independent of the rest u of e, Var s = 1/(1ᵀV⁻¹1), the probability is the mean
-//! over u, which has two dimensions, of Φ((λ found − λ(M₀ + u))/σ_s): a sum over a grid.
+//! Adding s to both diagonal elements adds s to λ. With s the part of e along the unit matrix that is
+//! independent of the rest u of e, Var s = 1/(1ᵀV⁻¹1), the probability is the mean over u, which has two
+//! dimensions, of Φ((λ found − λ(M₀ + u))/σ_s): a sum over a grid.
 //!
-//! So it is with noise. What the fixture's quantities do to a matrix turns it as a whole, k as T k Tᵀ where a place is off, and does not lead away from the edge however far it goes: of their part
-//! of the covariance only what λ varies by to first order counts.
+//! So it is with noise. What the fixture's quantities do to a matrix turns it as a whole, k as T k Tᵀ where a
+//! place is off, and does not lead away from the edge however far it goes: of their part of the covariance
+//! only what λ varies by to first order counts.
 
 use crate::settings::symmetry::PROJECTION_ROUNDS;
 use jointscope_linalg::Cholesky;
@@ -18,12 +22,13 @@ type Elements = [f64; 3];
 
 /// Of the unit matrix.
 const UNIT: Elements = [1.0, 0.0, 1.0];
-/// Grid in standard deviations: a sum over a normal density at this spacing is exact to rounding where the rest is smooth.
+/// Grid in standard deviations: a sum over a normal density at this spacing is exact to rounding where the
+/// rest is smooth.
 const REACH: i32 = 24;
 const SPACING: f64 = 0.35;
 
-/// P(a smallest eigenvalue as low | one of zero) of a matrix found with this covariance, of which `noise` is what would be left if the fixture were exact; nothing where
-/// an element is exact.
+/// P(a smallest eigenvalue as low | one of zero) of a matrix found with this covariance, of which `noise` is
+/// what would be left if the fixture were exact; nothing where an element is exact.
 pub(super) fn as_low_if_zero(
     found: Elements,
     covariance: [[f64; 3]; 3],
@@ -81,7 +86,8 @@ fn dot(a: Elements, b: Elements) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// Two vectors whose outer products sum to V − σ²·11ᵀ: a Cholesky factor with the pivot sought, since that is of rank two.
+/// Two vectors whose outer products sum to V − σ²·11ᵀ: a Cholesky factor with the pivot sought, since that is
+/// of rank two.
 fn rest(covariance: &[[f64; 3]; 3], along: f64) -> [Elements; 2] {
     let mut left: [[f64; 3]; 3] =
         std::array::from_fn(|i| std::array::from_fn(|j| covariance[i][j] - along * UNIT[i] * UNIT[j]));
@@ -187,7 +193,8 @@ mod tests {
         let mut uniform = || noise.uniform();
         let mut normal = || (-2.0 * uniform().ln()).sqrt() * (std::f64::consts::TAU * uniform()).cos();
         let runs = 1500;
-        // Deviations of all elements of v vᵀ = [1, −0.8, 0.64] or of zero, and what of their variance is left along the gradient of the smallest eigenvalue.
+        // Deviations of all elements of v vᵀ = [1, −0.8, 0.64] or of zero, and what of their variance is left
+        // along the gradient of the smallest eigenvalue.
         let along = [0.3902, 0.9756, 0.6098].map(|e: f64| e / 1.2151);
         for (name, edge, deviation, left, farthest_allowed, failing_allowed) in [
             ("little noise", [1.0, -0.8, 0.64], 0.02, 1.0, 0.042, 0.067),
@@ -234,7 +241,8 @@ mod tests {
     fn what_quantities_do_to_a_matrix_turns_it_and_counts_to_first_order_alone() {
         let noise = covariance([0.0; 9], 1e-3);
         let mut whole = noise;
-        // A large common error of both elements beside the diagonal's first: congruence of v vᵀ with v turned.
+        // A large common error of both elements beside the diagonal's first: congruence of v vᵀ with v
+        // turned.
         let turn = [0.0, 0.1, 0.128];
         (0..3).for_each(|i| (0..3).for_each(|j| whole[i][j] += turn[i] * turn[j]));
         let found = [1.0, 0.64, 0.64 * 0.64];

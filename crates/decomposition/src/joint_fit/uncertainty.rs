@@ -1,4 +1,5 @@
-//! How well the joint is known: by noise and tolerances, by what the model gets wrong, by a fixture stated too surely.
+//! How well the joint is known: by noise and tolerances, by what the model gets wrong, by a fixture stated
+//! too surely.
 
 use super::law::Dynamics;
 use crate::settings::noise::JACKKNIFE_BLOCKS;
@@ -11,7 +12,8 @@ pub(super) fn units(law: &Dynamics) -> [f64; 6] {
     std::array::from_fn(|slot| elements[slot % 3] * if slot < 3 { 1.0 } else { 1.0 / law.middle })
 }
 
-/// How far `coordinates` move when each of eight blocks of lines is left out; `step` is the step that other weights lead to.
+/// How far `coordinates` move when each of eight blocks of lines is left out; `step` is the step that other
+/// weights lead to.
 pub(super) fn jackknifed_by(
     lines: usize,
     weights: &[f64],
@@ -38,8 +40,9 @@ pub(super) fn total(posterior: &Covariance, inflation: f64, model: Option<&Covar
     Covariance::new(posterior.order(), entries.map(sum).collect())
 }
 
-/// Squared departures of the quantities (those after the first `own` parameters) from what is stated, per what chance would make of them (Birge's ratio): what of a quantity the FRFs tell may depart, what
-/// they do not tell stays. 1 where chance explains them.
+/// Squared departures of the quantities (those after the first `own` parameters) from what is stated, per
+/// what chance would make of them (Birge's ratio): what of a quantity the FRFs tell may depart, what they do
+/// not tell stays. 1 where chance explains them.
 pub(super) fn tolerance_inflation(
     parameters: &[Parameter],
     own: usize,
@@ -108,7 +111,8 @@ mod tests {
             .with_precision(1.0);
         let parameters =
             [Parameter { precision: 0.0, ..stated }, stated, stated, Parameter { precision: 0.0, ..stated }];
-        // Of the first quantity the FRFs tell three quarters, of the second nothing, of the third no one said anything.
+        // Of the first quantity the FRFs tell three quarters, of the second nothing, of the third no one said
+        // anything.
         let covariance = Covariance::new(
             4,
             [0.5, 0.25, 1.0, 9.0].iter().enumerate().fold(vec![0.0; 16], |mut all, (i, v)| {

@@ -1,10 +1,12 @@
 //! FRFs of the fixture without the joints that are looked for, and what these make of them.
 //!
-//! Each joint acts on its own d_j = u_to − R_j·u_from. With all d_j one below the other, G of the fixture without the joints and Z = diag(Z_j),
+//! Each joint acts on its own d_j = u_to − R_j·u_from. With all d_j one below the other, G of the fixture
+//! without the joints and Z = diag(Z_j),
 //!
 //! H_oi = G_oi − G_od (I + Z G_dd)⁻¹ Z G_di, and δH_oi = −G_od (I + Z G_dd)⁻¹ δZ (I + G_dd Z)⁻¹ G_di:
 //!
-//! whatever the joints, G stays; it does not matter whether they form a chain or loops. Without them the fixture falls into pieces, of which a quantity moves but the one that it belongs to.
+//! whatever the joints, G stays; it does not matter whether they form a chain or loops. Without them the
+//! fixture falls into pieces, of which a quantity moves but the one that it belongs to.
 
 use super::law::{MOST, Placed};
 use super::recorded::Recorded;
@@ -56,7 +58,8 @@ struct Piece {
 }
 
 impl Uncoupled {
-    /// A fixture without its joints but with the mass (kg, uniform) of the first of them. Pieces that `before` has already are taken from there.
+    /// A fixture without its joints but with the mass (kg, uniform) of the first of them. Pieces that
+    /// `before` has already are taken from there.
     ///
     /// `None` where a piece has no finite receptances.
     pub(super) fn of(
@@ -113,7 +116,8 @@ impl Uncoupled {
         Some(all)
     }
 
-    /// Adds the receptances between two stations to all entries that they are a part of; `on` says of each end what it is in which coordinates.
+    /// Adds the receptances between two stations to all entries that they are a part of; `on` says of each
+    /// end what it is in which coordinates.
     fn add(
         &mut self,
         (o, i): (usize, usize),
@@ -149,7 +153,8 @@ impl Uncoupled {
         }
     }
 
-    /// Puts the joint's mass in: each of its coordinates, those from `order` on, is loaded by s², a change of rank one.
+    /// Puts the joint's mass in: each of its coordinates, those from `order` on, is loaded by s², a change of
+    /// rank one.
     fn put_in_the_mass(&mut self, recorded: &Recorded) {
         let (width, n) = (self.width, recorded.s.len());
         let (outputs, inputs) = (recorded.responses.len(), recorded.references.len());
@@ -181,8 +186,8 @@ impl Uncoupled {
         }
     }
 
-    /// What is recorded with joints of these laws, FRF after FRF; its derivatives by the coordinates of laws (these or others that take their places), one law's after the
-    /// other's, over `columns`, if wanted.
+    /// What is recorded with joints of these laws, FRF after FRF; its derivatives by the coordinates of laws
+    /// (these or others that take their places), one law's after the other's, over `columns`, if wanted.
     ///
     /// `None` where a line has no finite response.
     pub(super) fn coupled(
@@ -242,7 +247,8 @@ impl Coupled<'_> {
         })
     }
 
-    /// `ORDER`, the number of coordinates, is one of the compiler's: loops over so few cost three times as much where it is not.
+    /// `ORDER`, the number of coordinates, is one of the compiler's: loops over so few cost three times as
+    /// much where it is not.
     #[inline(always)]
     fn on_lines<T: Lines, const ORDER: usize>(
         self,
@@ -373,8 +379,8 @@ fn has_the_same_factors(one: &MeasuringChain, other: &MeasuringChain) -> bool {
     one.decay() == other.decay() && readings.all(|(a, b)| a.has_signals_of(b))
 }
 
-/// What the motion of a joint's end is a part of, and with what weight: d_j = u_to − R·u_from, and for the first joint the coordinates of its mass, which are those of all d
-/// followed by lᵀu of `masses`.
+/// What the motion of a joint's end is a part of, and with what weight: d_j = u_to − R·u_from, and for the
+/// first joint the coordinates of its mass, which are those of all d followed by lᵀu of `masses`.
 fn on_relative(station: usize, lengths: &[f64], masses: &[[f64; 4]]) -> Vec<(usize, f64)> {
     let (joint, end) = (station / ENDS, station % ENDS);
     let (y, theta) = (2 * joint, 2 * joint + 1);

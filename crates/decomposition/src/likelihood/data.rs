@@ -31,7 +31,8 @@ pub(super) struct Data {
     lines: Vec<Line>,
     /// (response, reference) of each FRF on the blocks' motions.
     rows: Vec<([f64; 2], [f64; 2])>,
-    /// Receptances and weights 2/σ², FRF after FRF within a line: the noise of a complex value has half of its variance in each part.
+    /// Receptances and weights 2/σ², FRF after FRF within a line: the noise of a complex value has half of
+    /// its variance in each part.
     measured: Vec<Complex64>,
     weights: Vec<f64>,
     scalar: bool,
@@ -43,7 +44,8 @@ pub(super) struct Part<'a> {
     left_out: Range<usize>,
 }
 
-/// What the linear rounds need of a line: β43 (I − X T) and β43 X with the measured X; nothing where a matrix is singular.
+/// What the linear rounds need of a line: β43 (I − X T) and β43 X with the measured X; nothing where a matrix
+/// is singular.
 pub(super) struct Linear(Vec<Option<[ComplexMatrix2; 2]>>);
 
 impl Data {
@@ -123,7 +125,8 @@ impl Data {
         self.rows.iter().zip(values).map(|(row, (weight, value))| (row, *weight, *value))
     }
 
-    /// (I + k T)⁻¹ and (I + T k)⁻¹, which need no inverse of k; of a scalar joint, which has none, of its element alone.
+    /// (I + k T)⁻¹ and (I + T k)⁻¹, which need no inverse of k; of a scalar joint, which has none, of its
+    /// element alone.
     fn inverses(&self, joint: ComplexMatrix2, total: ComplexMatrix2) -> Option<[ComplexMatrix2; 2]> {
         if self.scalar {
             let factor = (joint.at(0, 0) * total.at(0, 0) + 1.0).inv();
@@ -153,7 +156,8 @@ impl Data {
         Linear(self.lines.iter().map(of_line).collect())
     }
 
-    /// Rounds of the linear problem t_pᵀ β43 [X − (I − X T) k] (I + T k₀)⁻¹ R α21 t_q = 0 for k, k₀ being the last round's.
+    /// Rounds of the linear problem t_pᵀ β43 [X − (I − X T) k] (I + T k₀)⁻¹ R α21 t_q = 0 for k, k₀ being the
+    /// last round's.
     pub(super) fn linear_rounds(&self, linear: &Linear, start: Parameters) -> Parameters {
         let mut current = start;
         for _ in 0..LINEAR_ROUNDS {

@@ -1,4 +1,5 @@
-//! The elements of k and c that the likelihood is maximised over; where c would give out energy, c = v vᵀ takes its place.
+//! The elements of k and c that the likelihood is maximised over; where c would give out energy, c = v vᵀ
+//! takes its place.
 
 use jointscope_linalg::{Matrix2, RealMatrix2};
 

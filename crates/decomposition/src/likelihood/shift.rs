@@ -1,7 +1,8 @@
 //! How the fitted joint follows a change of what it was fitted to, to first order.
 //!
-//! At an optimum the gradient g of χ² by the parameters θ is zero. Where a quantity q of the fixture moves, the optimum moves so that it stays zero:
-//! dθ/dq = −H⁻¹ ∂g/∂q, H being the second derivatives of χ². No fit is repeated.
+//! At an optimum the gradient g of χ² by the parameters θ is zero. Where a quantity q of the fixture moves,
+//! the optimum moves so that it stays zero: dθ/dq = −H⁻¹ ∂g/∂q, H being the second derivatives of χ². No fit
+//! is repeated.
 
 use super::LikelihoodFit;
 use super::data::{Data, lines_of};
@@ -42,7 +43,8 @@ impl<'a> Optimum<'a> {
         Some(Optimum { frfs, lines, at, right: equations.right, curvature })
     }
 
-    /// By how much k and c move with sides that differ by a little; `None` where these have no finite response.
+    /// By how much k and c move with sides that differ by a little; `None` where these have no finite
+    /// response.
     pub(crate) fn moved(
         &self,
         (plan, sides): (&CrossingFrfs, &Sides),
@@ -63,7 +65,8 @@ impl<'a> Optimum<'a> {
     }
 }
 
-/// Half of the second derivatives of χ², by forward differences of the gradient; `None` where they are not positive definite.
+/// Half of the second derivatives of χ², by forward differences of the gradient; `None` where they are not
+/// positive definite.
 fn curvature(data: &Data, (at, here): (&Parameters, &[f64]), gauss_newton: &Cholesky) -> Option<Cholesky> {
     let n = gauss_newton.order();
     let covariance = gauss_newton.inverse();

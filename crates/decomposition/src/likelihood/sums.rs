@@ -4,7 +4,8 @@ use super::parameters::Parameters;
 use jointscope_inference::NormalEquations;
 use num_complex::Complex64;
 
-/// Sums over values: χ², Re Σ w·conj(dₘ)·dₙ and Re Σ w·conj(dₘ)·r, d being derivatives by (k11, k12, k22, c11, c12, c22).
+/// Sums over values: χ², Re Σ w·conj(dₘ)·dₙ and Re Σ w·conj(dₘ)·r, d being derivatives by (k11, k12, k22,
+/// c11, c12, c22).
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Sums {
     pub chi2: f64,
@@ -31,7 +32,8 @@ impl OfLine {
         }
     }
 
-    /// Adds it to the gradient alone; answers with its derivatives by k11, k12, k22, and these conjugate and weighted.
+    /// Adds it to the gradient alone; answers with its derivatives by k11, k12, k22, and these conjugate and
+    /// weighted.
     #[inline]
     pub(super) fn add_right(
         &mut self,

@@ -107,7 +107,8 @@ proptest! {
     }
 }
 
-/// How often stated 95 % intervals hold what was put in: real and imaginary part of each compliance, K and C of each spring.
+/// How often stated 95 % intervals hold what was put in: real and imaginary part of each compliance, K and C
+/// of each spring.
 struct Coverage {
     lines: usize,
     compliances: [[usize; 2]; 3],
@@ -216,7 +217,8 @@ fn a_channel_out_of_calibration_breaks_reciprocity_and_the_lines_say_so() {
 
 #[test]
 fn the_inertia_of_a_joint_with_a_mass_is_taken_out_of_its_interfaces() {
-    // A beam of two thirds of the stated EI, 80 g of it: what it yields more than the stated one is r₂ = r₃ = ΔL/2 and t = −ΔL³/6, Δ = 1/EI' − 1/EI.
+    // A beam of two thirds of the stated EI, 80 g of it: what it yields more than the stated one is
+    // r₂ = r₃ = ΔL/2 and t = −ΔL³/6, Δ = 1/EI' − 1/EI.
     let stated = glued().blocks;
     let softer = TwoBlocks {
         bending_stiffness: stated.bending_stiffness / 1.5,

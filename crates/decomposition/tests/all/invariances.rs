@@ -1,5 +1,6 @@
-//! What a decomposition must not depend on: the units of mass, length and time, the side from which the fixture is drawn, the order of the FRFs and how often they are given, which
-//! end of a reciprocal pair was struck.
+//! What a decomposition must not depend on: the units of mass, length and time, the side from which the
+//! fixture is drawn, the order of the FRFs and how often they are given, which end of a reciprocal pair was
+//! struck.
 
 use crate::common::{TwoBlocks, frfs};
 use jointscope_decomposition::{Analysis, AnalysisOptions, JointFit};
@@ -134,7 +135,8 @@ proptest! {
         let label = |pair: &FrfPair| FrfPair::transverse(&turned(&pair.response.point), &turned(&pair.reference.point));
         let other = relabelled(&recorded, &AS_THEY_ARE, label, 1.0, 1.0);
         let (one, back) = (found(&fit(&blocks.fixture(), &recorded)), found(&fit(&mirrored.fixture(), &other)));
-        // K speaks of the end at point 3; seen from the other end the displacement there is moved by the length and rotations turn the other way.
+        // K speaks of the end at point 3; seen from the other end the displacement there is moved by the
+        // length and rotations turn the other way.
         let arm = jointscope_linalg::Matrix2([[1.0, -blocks.length], [0.0, -1.0]]);
         let expected = arm.transpose() * one.0 * arm;
         for (i, j) in [(0, 0), (0, 1), (1, 1)] {

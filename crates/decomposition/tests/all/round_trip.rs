@@ -107,8 +107,9 @@ proptest! {
             "physics": [{{"kind": "added_mass", "place": "A", "x": {}, "mass": {mass}}}]"#, blocks.length + b, -a);
         let k = end_stiffness(blocks.bending_stiffness, blocks.length);
         let mut found = spectrum(&blocks.fixture(), &ACROSS, Relation::Exact);
-        // Below a side's resonance on its supports its compliance is the difference of two large numbers: up to
-        // support/(ω²m) times the rounding comes on top of the relation's own condition, and that of taking supports and masses off each side.
+        // Below a side's resonance on its supports its compliance is the difference of two large numbers: up
+        // to support/(ω²m) times the rounding comes on top of the relation's own condition, and that of
+        // taking supports and masses off each side.
         for line in &mut found.solved {
             let omega = std::f64::consts::TAU * line.frequency;
             let lightest = blocks.mass[0].min(blocks.mass[1]);
@@ -140,7 +141,8 @@ fn hammer_and_sensors_may_change_sides() {
     }
 }
 
-/// The closed form of eq (7) on two rigid blocks and a massless Euler beam, x = ω²; an E with a loss factor makes EI complex.
+/// The closed form of eq (7) on two rigid blocks and a massless Euler beam, x = ω²; an E with a loss factor
+/// makes EI complex.
 fn closed_form(blocks: &TwoBlocks, eta: f64, omega: f64) -> jointscope_linalg::ComplexMatrix2 {
     use num_complex::Complex64;
     let ei = Complex64::new(1.0, eta) * blocks.bending_stiffness;
@@ -159,8 +161,9 @@ fn closed_form(blocks: &TwoBlocks, eta: f64, omega: f64) -> jointscope_linalg::C
     )
 }
 
-/// Compares eq (7) of the program with its closed form on sixty lines up to twice the peak and one line 1e-3 beside it, to
-/// 1e-9 on well-conditioned lines and to rounding times the condition number on the others; the condition beside the peak.
+/// Compares eq (7) of the program with its closed form on sixty lines up to twice the peak and one line 1e-3
+/// beside it, to 1e-9 on well-conditioned lines and to rounding times the condition number on the others; the
+/// condition beside the peak.
 fn check_paper(blocks: &TwoBlocks, eta: f64) -> Result<f64, TestCaseError> {
     let (ei, l, inertia) = (blocks.bending_stiffness, blocks.length, [blocks.inertia(0), blocks.inertia(1)]);
     let s = blocks.half_length[0] / inertia[0] + blocks.half_length[1] / inertia[1];
@@ -213,7 +216,8 @@ proptest! {
             mass: [ma, mb], half_length: [a, b], bending_stiffness: ei, length: l,
             damping: format!(r#"{{"loss_factor": {eta}}}"#), extra: String::new(),
         };
-        // Undamped, 1e-3 from the pole, K is hundreds of times its asymptote and must still have been compared.
+        // Undamped, 1e-3 from the pole, K is hundreds of times its asymptote and must still have been
+        // compared.
         let condition = check_paper(&blocks, eta)?;
         prop_assert!(condition < 1e8, "{condition:e}");
     }

@@ -35,7 +35,8 @@ fn of_the_mean(std: [f64; 2]) -> f64 {
     Analysis::of(&fixture, &frfs, &options).unwrap().tolerance_of_averages().0.at(0, 0)
 }
 
-/// Mean over the band of eq (5), 1/k = 1/(m_A m_B ω⁴ H) + (1/m_A + 1/m_B)/ω², with masses other than the true ones.
+/// Mean over the band of eq (5), 1/k = 1/(m_A m_B ω⁴ H) + (1/m_A + 1/m_B)/ω², with masses other than the true
+/// ones.
 fn by_hand(masses: [f64; 2]) -> f64 {
     let k = |hz: f64| {
         let x = (std::f64::consts::TAU * hz).powi(2);
@@ -57,11 +58,12 @@ fn a_masss_tolerance_moves_the_mean_as_eq_5_says() {
     assert!((found / expected.abs() - 1.0).abs() < 1e-4, "{found} N/m, by hand {expected}");
 }
 
-/// Share of a quantity that it moves by: small enough for the first order to be all, large enough for fits to tell.
+/// Share of a quantity that it moves by: small enough for the first order to be all, large enough for fits to
+/// tell.
 const MOVED: f64 = 2e-4;
 
-/// Changes of a fit's six numbers when a quantity moves: as stated, and by the fit repeated on both sides of it; their deviations; χ² per degree of freedom. The recording is of blocks
-/// with `left_out` besides.
+/// Changes of a fit's six numbers when a quantity moves: as stated, and by the fit repeated on both sides of
+/// it; their deviations; χ² per degree of freedom. The recording is of blocks with `left_out` besides.
 fn changes_of_the_fit(left_out: &str, index: usize) -> ([[f64; 6]; 3], f64) {
     let blocks = |extra: &str| TwoBlocks {
         mass: [5.36, 5.11],

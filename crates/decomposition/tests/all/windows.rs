@@ -37,7 +37,8 @@ fn errors(found: &JointSpectrum) -> (f64, f64, f64) {
     for line in &found.solved {
         let omega = TAU * line.frequency;
         for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-            // sC is a small part of the dynamic stiffness: its relative error is that of the whole times their ratio.
+            // sC is a small part of the dynamic stiffness: its relative error is that of the whole times
+            // their ratio.
             let ratio = k.at(i, j).abs() / (omega * c.at(i, j).abs());
             if line.condition < 1e5 {
                 well += 1;

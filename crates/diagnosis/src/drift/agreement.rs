@@ -3,7 +3,8 @@
 use super::table::{Table, chance};
 use crate::settings::drift::differences::{AGREE, LEAST_DIFFERENCE};
 
-/// Whether each reference belongs to the most that agree, each with each: of as many the one with more FRFs (`frfs` of each), then the first.
+/// Whether each reference belongs to the most that agree, each with each: of as many the one with more FRFs
+/// (`frfs` of each), then the first.
 pub(super) fn agreeing(table: &Table, frfs: &[usize]) -> Vec<bool> {
     let count = table.references;
     let below: Vec<Vec<bool>> = (0..count).map(|a| (0..a).map(|b| pair(table, a, b)).collect()).collect();

@@ -21,7 +21,8 @@ use std::f64::consts::TAU;
 pub struct ReferenceChange {
     /// Where was struck.
     pub reference: Channel,
-    /// Relative change of the stiffness that drifted while this reference was struck: zero by definition where the references agree.
+    /// Relative change of the stiffness that drifted while this reference was struck: zero by definition
+    /// where the references agree.
     pub change: f64,
     /// Its standard deviation.
     pub std: f64,
@@ -36,7 +37,8 @@ pub struct ReferenceChange {
 pub struct ModeDrift {
     /// Natural frequency, Hz.
     pub frequency: f64,
-    /// Relative change of it by reference, in the order of [`TestDrift::references`]; `None` where a reference does not show the mode.
+    /// Relative change of it by reference, in the order of [`TestDrift::references`]; `None` where a
+    /// reference does not show the mode.
     pub changes: Vec<Option<f64>>,
     /// Standard deviations of these.
     pub std: Vec<Option<f64>>,
@@ -45,11 +47,13 @@ pub struct ModeDrift {
 /// A test that drifted between references.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TestDrift {
-    /// Whose stiffness explains it: `joints/J`, `bodies/F` or `all stiffnesses`; `None` where the modes do not tell one.
+    /// Whose stiffness explains it: `joints/J`, `bodies/F` or `all stiffnesses`; `None` where the modes do
+    /// not tell one.
     pub what: Option<String>,
     /// All that explain it, where `what` is `None`; empty where nothing does.
     pub could_be: Vec<String>,
-    /// By reference, in the order in which the recording has them. Changes are of `what`; without, of all stiffnesses alike.
+    /// By reference, in the order in which the recording has them. Changes are of `what`; without, of all
+    /// stiffnesses alike.
     pub references: Vec<ReferenceChange>,
     /// Probability of poles that differ as much between references by chance.
     pub p_value: f64,
@@ -72,8 +76,9 @@ struct StiffnessChanges {
 }
 
 impl TestDrift {
-    /// Probability by chance of poles that differ between references as much as in this recording, drift or not; `None` where nothing can be compared. The FRFs' own
-    /// noise is taken, or estimated where they have none.
+    /// Probability by chance of poles that differ between references as much as in this recording, drift or
+    /// not; `None` where nothing can be compared. The FRFs' own noise is taken, or estimated where they have
+    /// none.
     pub fn chance(fixture: &Fixture, frfs: &FrfSet) -> Option<f64> {
         let observation = Observation::new(frfs, |_| true).ok()?;
         let references = references(&observation);
@@ -139,7 +144,8 @@ fn attributed(drifted: &Drifted, model: &Fixture, explains: bool) -> TestDrift {
     }
 }
 
-/// Changes of one stiffness by reference. The shares of a model that is not exact are off by a factor common to all references of a mode, which is fitted beside them.
+/// Changes of one stiffness by reference. The shares of a model that is not exact are off by a factor common
+/// to all references of a mode, which is fitted beside them.
 fn stiffness_changes(
     table: &Table,
     kept: &[bool],
@@ -178,7 +184,8 @@ fn stiffness_changes(
     Some(StiffnessChanges { changes: (0..table.references).map(of).collect(), chi2: fit.chi2 })
 }
 
-/// The stiffnesses of a model with their shares in these modes of a recording: joints, beams, and all of them together.
+/// The stiffnesses of a model with their shares in these modes of a recording: joints, beams, and all of them
+/// together.
 fn candidates(model: &Fixture, recorded: &RecordedModes, modes: &[usize]) -> Vec<Candidate> {
     let Some(modelled) = ModelledModes::of(model, recorded) else { return Vec::new() };
     let pairing = Pairing::of(recorded, &modelled);

@@ -21,7 +21,8 @@ pub(crate) struct Drifted {
 }
 
 impl Drifted {
-    /// Drift between the references of a recording; `None` where their poles agree, or there is nothing to compare.
+    /// Drift between the references of a recording; `None` where their poles agree, or there is nothing to
+    /// compare.
     pub(crate) fn of(
         observation: &Observation,
         nominal: &Hypothesis,

@@ -36,7 +36,8 @@ struct ReferenceModes {
     modes: RecordedModes,
 }
 
-/// What the FRFs say; `None` where the references' modes differ no more than chance makes with the probability `certain`, each reference's FRFs taken together.
+/// What the FRFs say; `None` where the references' modes differ no more than chance makes with the
+/// probability `certain`, each reference's FRFs taken together.
 pub(super) fn poles_by_frf(
     observation: &Observation,
     nominal: &Hypothesis,
@@ -116,7 +117,8 @@ fn cells(
     cells
 }
 
-/// Probability of natural frequencies of the `compared` modes of `base` that differ as much between references by chance.
+/// Probability of natural frequencies of the `compared` modes of `base` that differ as much between
+/// references by chance.
 fn probability_by_chance(
     base: &RecordedModes,
     compared: &[usize],

@@ -1,4 +1,5 @@
-//! ln ω of each mode in each FRF, taken apart into what goes with the response and what goes with the reference: weighted least squares.
+//! ln ω of each mode in each FRF, taken apart into what goes with the response and what goes with the
+//! reference: weighted least squares.
 
 use jointscope_linalg::Cholesky;
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
@@ -89,8 +90,8 @@ impl Table {
         self.cells.iter().map(equation).collect()
     }
 
-    /// χ² of what each response's own constants leave, references that are alike (by `kept`) taken as one: the others have a constant of their own for
-    /// each mode.
+    /// χ² of what each response's own constants leave, references that are alike (by `kept`) taken as one:
+    /// the others have a constant of their own for each mode.
     pub(super) fn by_reference(&self, kept: impl Fn(usize) -> bool) -> Option<Fit> {
         let first = self.constants();
         let more = |cell: &Cell| match kept(cell.reference) {
@@ -150,8 +151,9 @@ impl Table {
         (of_references, left)
     }
 
-    /// Responses of one reference, at the most. Where they were recorded in the same hits they share the noise of the force, and all of them together tell a
-    /// natural frequency no better than one. Whether they were no recording says: variances of what goes with references are multiplied by this number, which is
+    /// Responses of one reference, at the most. Where they were recorded in the same hits they share the
+    /// noise of the force, and all of them together tell a natural frequency no better than one. Whether they
+    /// were no recording says: variances of what goes with references are multiplied by this number, which is
     /// the most that any correlation makes of them.
     pub(super) fn shared(&self) -> f64 {
         let responses = |mode: usize, reference: usize| {
@@ -161,7 +163,8 @@ impl Table {
         all.map(|(mode, reference)| responses(mode, reference)).max().unwrap_or(1).max(1) as f64
     }
 
-    /// What variances have to be multiplied by for FRFs that agree neither by response nor by reference; at least 1.
+    /// What variances have to be multiplied by for FRFs that agree neither by response nor by reference; at
+    /// least 1.
     pub(super) fn inflation(&self) -> f64 {
         let (_, left) = self.degrees();
         match self.by_reference(|_| false) {
@@ -170,7 +173,8 @@ impl Table {
         }
     }
 
-    /// Probability by chance of references that differ as much beside what goes with the responses; `None` where nothing tells one from the other.
+    /// Probability by chance of references that differ as much beside what goes with the responses; `None`
+    /// where nothing tells one from the other.
     pub(super) fn chance(&self) -> Option<f64> {
         let (of_references, left) = self.degrees();
         if of_references == 0 {
@@ -182,7 +186,8 @@ impl Table {
     }
 }
 
-/// Probability of a χ² as large: by the variances as stated, or where they had to be inflated, by the ratio to what `left` degrees of freedom leave.
+/// Probability of a χ² as large: by the variances as stated, or where they had to be inflated, by the ratio
+/// to what `left` degrees of freedom leave.
 pub(super) fn chance(chi2: f64, degrees: usize, inflation: f64, left: usize) -> f64 {
     if degrees == 0 {
         return 1.0;

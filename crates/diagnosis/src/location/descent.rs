@@ -60,8 +60,9 @@ impl<'a> Descent<'a> {
         Descent { problem, state, tangent: None }
     }
 
-    /// Up to `steps` steps with the given weights: what is left, and where. `None` where there are no derivatives. `on_the_way` to other
-    /// weights old derivatives are believed when they say that it has converged.
+    /// Up to `steps` steps with the given weights: what is left, and where. `None` where there are no
+    /// derivatives. `on_the_way` to other weights old derivatives are believed when they say that it has
+    /// converged.
     pub(super) fn descend(self, weights: &[f64], steps: usize, on_the_way: bool) -> Option<(f64, Self)> {
         let settings = &self.problem.settings().location;
         // Free scalars are those of other weights.
@@ -106,8 +107,8 @@ impl Problem<'_> {
         Some(Start { hypothesis: hypothesis.clone(), centre, surroundings: self.surroundings(hypothesis)? })
     }
 
-    /// Fits from each of several starts with inflated noise, of each from the most promising of `sites`, and some way on from the best
-    /// of their ends; with what is left, noise still inflated.
+    /// Fits from each of several starts with inflated noise, of each from the most promising of `sites`, and
+    /// some way on from the best of their ends; with what is left, noise still inflated.
     pub(super) fn approached(&self, starts: &[Start], sites: &[Site]) -> Option<(f64, Descent<'_>)> {
         let settings = &self.settings().location;
         let weights = self.recorded.inflated(settings.inflation[0], &self.recorded.measured);

@@ -25,8 +25,9 @@ impl FittedLaw {
     }
 }
 
-/// The laws that come closest to a site's free scalars, the closest first: guessed and fitted on `few` lines, ended on all lines of
-/// `whole`. `base` is where the tolerances may set out from besides where the free scalars have led them.
+/// The laws that come closest to a site's free scalars, the closest first: guessed and fitted on `few` lines,
+/// ended on all lines of `whole`. `base` is where the tolerances may set out from besides where the free
+/// scalars have led them.
 pub(super) fn fitted_laws(
     few: &Problem,
     whole: &Problem,
@@ -78,7 +79,8 @@ impl Problem<'_> {
         Some(FittedLaw { law: fit.law, state, objective })
     }
 
-    /// The law as it is stated, on the lines `stated`, where free scalars leave `lowest`; `None` where its parameters are not determined.
+    /// The law as it is stated, on the lines `stated`, where free scalars leave `lowest`; `None` where its
+    /// parameters are not determined.
     pub(super) fn stated(&self, fit: &FittedLaw, lowest: f64, stated: &[usize]) -> Option<LawFit> {
         let bound = Problem { law: Some(fit.law), ..*self };
         let tangent = bound.tangent(&fit.state, true)?;

@@ -6,7 +6,8 @@ use num_complex::Complex64;
 /// A free state at its best and the directions in which it may still yield.
 pub(super) struct FreeScalars {
     pub state: Iterate,
-    /// Information about the coordinates with all scalars free, row-major; of the order of `FreeScalars::order`.
+    /// Information about the coordinates with all scalars free, row-major; of the order of
+    /// `FreeScalars::order`.
     pub information: Vec<f64>,
     /// Minus half the objective's gradient: what convergence has left.
     pub pull: Vec<f64>,

@@ -1,10 +1,10 @@
 //! A first guess at a law's parameters from a site's free scalars, by generalised least squares.
 //!
-//! The scalars z were found with the tolerances at their best; a law that wants other tolerances may have them, at the cost of the
-//! information that the recordings hold about them: minimised is Σ w |ẑ + S Δq − z(law)|² + Δqᵀ N Δq,
-//! with a linear term where the tolerances had not quite converged. Residuals are taken in z, which the noise
-//! enters linearly, never in δ, which near a resonance it does not. All of it is linear in the tolerances: a guess, from which the law is fitted
-//! to the FRFs themselves.
+//! The scalars z were found with the tolerances at their best; a law that wants other tolerances may have
+//! them, at the cost of the information that the recordings hold about them: minimised is Σ w |ẑ + S Δq −
+//! z(law)|² + Δqᵀ N Δq, with a linear term where the tolerances had not quite converged. Residuals are taken
+//! in z, which the noise enters linearly, never in δ, which near a resonance it does not. All of it is linear
+//! in the tolerances: a guess, from which the law is fitted to the FRFs themselves.
 
 use super::free_scalars::FreeScalars;
 use super::laws::{Law, Line};
@@ -75,8 +75,9 @@ impl<'a> Measured<'a> {
         fits.min_by(|a, b| a.left.total_cmp(&b.left))
     }
 
-    /// The start with its amplitude at the mean of the component over the law. Lines count by what is known of them, at best by a tenth of
-    /// their size: a start should follow the trend, not the few lines that are known best.
+    /// The start with its amplitude at the mean of the component over the law. Lines count by what is known
+    /// of them, at best by a tenth of their size: a start should follow the trend, not the few lines that are
+    /// known best.
     fn amplified(&self, law: &Law, start: Vec<f64>) -> Option<Vec<f64>> {
         let mut unit = start;
         unit[0] = 1.0;

@@ -21,8 +21,8 @@ impl Line {
     }
 }
 
-/// A law: the missing component over frequency by a few parameters, the first of which is an amplitude. Of what is in series it is the
-/// compliance: there nothing missing is zero.
+/// A law: the missing component over frequency by a few parameters, the first of which is an amplitude. Of
+/// what is in series it is the compliance: there nothing missing is zero.
 #[derive(Clone, Copy)]
 pub(super) struct Law {
     pub name: &'static str,

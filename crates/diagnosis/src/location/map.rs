@@ -1,4 +1,5 @@
-//! The map of a mismatch: every site fitted, what each leaves unexplained, and the δ(ω) it would have to have.
+//! The map of a mismatch: every site fitted, what each leaves unexplained, and the δ(ω) it would have to
+//! have.
 
 use super::descent::{Descent, Start};
 use super::fitted_law::{FittedLaw, fitted_laws};
@@ -16,12 +17,14 @@ use jointscope_inference::{each, each_used_up};
 use jointscope_linalg::Cholesky;
 use num_complex::Complex64;
 
-/// What each site leaves unexplained of a mismatch, the best first by χ² and what it asks of the tolerances; empty with fewer than two FRFs, which over-determine nothing.
+/// What each site leaves unexplained of a mismatch, the best first by χ² and what it asks of the tolerances;
+/// empty with fewer than two FRFs, which over-determine nothing.
 ///
-/// Every site sets out from the quantities as `base` has them and as `refitted` bent them, and goes on from the better end. Of a body the
-/// abscissa is sought too. The way is found on six dozen lines, half of them the peaks; sites that come near the best are then fitted on all
-/// lines, of the others only what they leave there is stated. δ and laws are those of the best three. A recording of more than two thousand
-/// lines is thinned: every k-th line, and as many of those with the largest signal against noise.
+/// Every site sets out from the quantities as `base` has them and as `refitted` bent them, and goes on from
+/// the better end. Of a body the abscissa is sought too. The way is found on six dozen lines, half of them
+/// the peaks; sites that come near the best are then fitted on all lines, of the others only what they leave
+/// there is stated. δ and laws are those of the best three. A recording of more than two thousand lines is
+/// thinned: every k-th line, and as many of those with the largest signal against noise.
 pub fn locate(base: &Hypothesis, refitted: &Fit, observation: &Observation) -> Vec<Location> {
     located(Fitter { observation, settings: &Settings::default(), watch: Watch::default() }, base, refitted)
 }
@@ -90,9 +93,9 @@ fn least(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(f64::INFINITY, f64::min)
 }
 
-/// The measured δ(ω) of effect `index` of a repaired fit: one free scalar a line at its place, beside the other effects as they were
-/// fitted, tolerances yielding from where the fit left them. `None` for an effect that does not act through one site, and with fewer
-/// than two FRFs.
+/// The measured δ(ω) of effect `index` of a repaired fit: one free scalar a line at its place, beside the
+/// other effects as they were fitted, tolerances yielding from where the fit left them. `None` for an effect
+/// that does not act through one site, and with fewer than two FRFs.
 pub fn measure(repaired: &Fit, index: usize, observation: &Observation) -> Option<Location> {
     measured(Fitter { observation, settings: &Settings::default(), watch: Watch::default() }, repaired, index)
 }
@@ -122,8 +125,8 @@ pub(crate) fn measured(fitter: Fitter, repaired: &Fit, index: usize) -> Option<L
     stated_location(&few, &whole, on_few, state, &without)
 }
 
-/// What a fitted site comes to, with its δ and its laws. A law may lead to tolerances that suit the free scalars better, too: a false minimum
-/// left, from which they then go on.
+/// What a fitted site comes to, with its δ and its laws. A law may lead to tolerances that suit the free
+/// scalars better, too: a false minimum left, from which they then go on.
 fn stated_location(
     few: &Problem,
     whole: &Problem,
@@ -207,7 +210,8 @@ fn location(problem: &Problem, state: &Iterate) -> Location {
     }
 }
 
-/// Degrees of freedom of a line: real values less the scalar, where it is felt. Values of FRFs that parameters alone on a line determine nothing.
+/// Degrees of freedom of a line: real values less the scalar, where it is felt. Values of FRFs that
+/// parameters alone on a line determine nothing.
 fn degrees_of_freedom(recorded: &Recorded, state: &Iterate, line: usize) -> usize {
     let valid = recorded.places(line).filter(|p| recorded.weights[*p] > 0.0);
     let felt = valid.clone().any(|p| state.slopes[p] != Complex64::ZERO);
@@ -235,7 +239,8 @@ fn deltas(free_scalars: &FreeScalars, problem: &Problem) -> Vec<(usize, LineEsti
         for (sum, row) in spread.iter_mut().zip(covariance.chunks_exact(n.max(1))) {
             *sum = row.iter().zip(sensitivities).map(|(c, s)| s * *c).sum();
         }
-        // Noise has one variance in the real and the imaginary part; of the tolerances' share their mean is stated.
+        // Noise has one variance in the real and the imaginary part; of the tolerances' share their mean is
+        // stated.
         let tolerances: f64 =
             spread.iter().zip(sensitivities).map(|(a, s)| (a.conj() * s).re).sum::<f64>().max(0.0);
         let deviation = (1.0 / weight + 0.5 * tolerances).sqrt();

@@ -10,8 +10,9 @@ use num_complex::Complex64;
 
 /// One FRF's recorded value as the site's scalar z grows: h + (z a + z² b)/(1 + z t + z² d).
 ///
-/// One channel through the structure is linear in z = γ (t appears where a sensor's own mass makes bᵀZ⁻¹b differ from row to row), a position that
-/// is response and reference at once is a square, a factor on a joint's 2×2 stiffness is the whole expression.
+/// One channel through the structure is linear in z = γ (t appears where a sensor's own mass makes bᵀZ⁻¹b
+/// differ from row to row), a position that is response and reference at once is a square, a factor on a
+/// joint's 2×2 stiffness is the whole expression.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct RationalResponse {
     pub start: Complex64,
@@ -52,8 +53,8 @@ impl RationalResponse {
     }
 }
 
-/// How the scalar z of a line becomes the missing component: sign·z/(1 − feedback·z), which for what is in series is its compliance 1/δ, and
-/// else δ.
+/// How the scalar z of a line becomes the missing component: sign·z/(1 − feedback·z), which for what is in
+/// series is its compliance 1/δ, and else δ.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Inversion {
     pub sign: f64,
@@ -137,7 +138,8 @@ struct LoadIndices {
     to_sites: [usize; MOST],
 }
 
-/// Receptances of one FRF: between its channels, from the site's stations to its response, and from its reference to them.
+/// Receptances of one FRF: between its channels, from the site's stations to its response, and from its
+/// reference to them.
 struct Local {
     whole: Complex64,
     out: [Complex64; MOST],
@@ -159,8 +161,8 @@ pub(super) struct Pattern<'a> {
 }
 
 impl<'a> Pattern<'a> {
-    /// Prepares the pattern of `site` for the FRFs `pairs` on `model`, which is that of `fixture`. `None` where the site does not exist there, or is
-    /// not of the form that this file knows.
+    /// Prepares the pattern of `site` for the FRFs `pairs` on `model`, which is that of `fixture`. `None`
+    /// where the site does not exist there, or is not of the form that this file knows.
     pub(super) fn new(fixture: &Fixture, model: &'a Model, site: &Site, pairs: &[FrfPair]) -> Option<Self> {
         let chain = MeasuringChain::of(fixture, pairs, Instrument::AsRecorded).ok()?;
         let mut wanted = Wanted::default();
@@ -348,7 +350,8 @@ fn action(fixture: &Fixture, site: &Site, pairs: &[FrfPair]) -> Option<(Vec<Stat
             let joint = fixture.joint(name)?;
             let here = |place: &Place| matches!(place, Place::Joint(other) if other == name);
             let at_its_ends = |place: &Place| matches!(place, Place::Point(p) if [joint.from, joint.to].iter().any(|e| fixture.points()[*e].name == *p));
-            // Inside a joint that is soft in series or has mass, a factor of its elastic part alone is another expression.
+            // Inside a joint that is soft in series or has mass, a factor of its elastic part alone is
+            // another expression.
             let others = fixture.physics().iter().any(|e| match e.kind.spec().entry {
                 Entry::WholeJoint | Entry::InSeries => here(&e.place) || at_its_ends(&e.place),
                 _ => false,

@@ -1,4 +1,5 @@
-//! A site as it is fitted: its scalar free on every line or bound to a law, the fixture's tolerances yielding within their priors.
+//! A site as it is fitted: its scalar free on every line or bound to a law, the fixture's tolerances yielding
+//! within their priors.
 //!
 //! The other effects of the hypothesis keep their parameters.
 

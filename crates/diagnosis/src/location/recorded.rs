@@ -59,8 +59,8 @@ impl<'a> Recorded<'a> {
     }
 }
 
-/// An observation on about `count` lines: evenly thinned ones, and as many of those with the largest signal against noise, which are the
-/// peaks. `None` where it has no more than that.
+/// An observation on about `count` lines: evenly thinned ones, and as many of those with the largest signal
+/// against noise, which are the peaks. `None` where it has no more than that.
 pub(super) fn most_informative(observation: &Observation, count: usize) -> Option<Observation> {
     let n = observation.lines().len();
     if n <= count {

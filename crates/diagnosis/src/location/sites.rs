@@ -8,7 +8,8 @@ use jointscope_fixture::{BodyKind, Dof, Effect, Entry, Fixture, Joint, Place};
 use jointscope_lumped::{JointElement, nominal_stiffness};
 use jointscope_spectra::Channel;
 
-/// The sites of a fixture and a recording; of each stretch of a body several abscissae from which the best may be sought.
+/// The sites of a fixture and a recording; of each stretch of a body several abscissae from which the best
+/// may be sought.
 pub(super) fn sites(fixture: &Fixture, observation: &Observation) -> Vec<Vec<Site>> {
     let stretches = |body| on_body(fixture, body).chunks(STRETCH).map(<[Site]>::to_vec).collect::<Vec<_>>();
     let mut all: Vec<Vec<Site>> = (0..fixture.bodies().len()).flat_map(stretches).collect();
@@ -63,8 +64,8 @@ fn on_body(fixture: &Fixture, body: usize) -> Vec<Site> {
     places.into_iter().map(at).collect()
 }
 
-/// A joint's series sites in one direction. Without mass of its own, translation reads the same at either end; at a point that two joints
-/// share nothing can be put in series with one of them alone.
+/// A joint's series sites in one direction. Without mass of its own, translation reads the same at either
+/// end; at a point that two joints share nothing can be put in series with one of them alone.
 fn series(fixture: &Fixture, joint: &Joint, dof: Dof) -> Vec<Site> {
     let points = fixture.points();
     let site = |point| Site::Series { joint: joint.name.clone(), point, dof };
@@ -84,7 +85,8 @@ impl Site {
         }
     }
 
-    /// Whether `effect` would act through this site of `fixture`. A body's abscissa is not compared: the effect's own is fitted.
+    /// Whether `effect` would act through this site of `fixture`. A body's abscissa is not compared: the
+    /// effect's own is fitted.
     pub fn holds(&self, effect: &Effect, fixture: &Fixture) -> bool {
         match (self, &effect.place, effect.kind.spec().entry) {
             (Site::Body { body, .. }, Place::Body(name), Entry::RankOne) => {

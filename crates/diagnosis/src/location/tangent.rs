@@ -11,7 +11,8 @@ use num_complex::Complex64;
 /// Parameters that a law may have.
 const MOST: usize = 4;
 
-/// Derivatives of the modelled values at a fixed component (or a fixed law): coordinate after coordinate, then line after line, FRF after FRF.
+/// Derivatives of the modelled values at a fixed component (or a fixed law): coordinate after coordinate,
+/// then line after line, FRF after FRF.
 #[derive(Clone)]
 pub(super) struct Tangent {
     pub order: usize,
@@ -27,14 +28,15 @@ impl Tangent {
 }
 
 impl Problem<'_> {
-    /// The models a step up each tolerance from a hypothesis: what all sites' derivatives there have in common.
+    /// The models a step up each tolerance from a hypothesis: what all sites' derivatives there have in
+    /// common.
     pub(super) fn surroundings(&self, hypothesis: &Hypothesis) -> Option<Vec<Modelled>> {
         let beside = |a| self.model(&hypothesis.moved(a, self.settings().fit.difference));
         (0..hypothesis.tolerances().len()).map(beside).collect()
     }
 
-    /// Differences about a state. A free scalar follows its component δ as bᵀZ⁻¹b changes. `central` ones where uncertainties are to be
-    /// stated; forward ones, at half the cost, show the way well enough.
+    /// Differences about a state. A free scalar follows its component δ as bᵀZ⁻¹b changes. `central` ones
+    /// where uncertainties are to be stated; forward ones, at half the cost, show the way well enough.
     pub(super) fn tangent(&self, at: &Iterate, central: bool) -> Option<Tangent> {
         if !central {
             return self.tangent_amid(at, &self.surroundings(&at.parameters.hypothesis)?);
@@ -169,7 +171,8 @@ impl Problem<'_> {
         normal
     }
 
-    /// The direction of each line's free scalar among the whitened values, of length one; zero where the pattern vanishes.
+    /// The direction of each line's free scalar among the whitened values, of length one; zero where the
+    /// pattern vanishes.
     fn units(&self, at: &Iterate, roots: &[f64]) -> Vec<Complex64> {
         let mut units: Vec<Complex64> = at.slopes.iter().zip(roots).map(|(s, root)| s * *root).collect();
         for line in units.chunks_exact_mut(self.recorded.frfs()) {

@@ -1,14 +1,16 @@
 //! What was found in the whole of a recording, looked for once more in a part of it.
 //!
-//! The part does not see what is held out, and has to need by itself what it is to predict that with. Several effects need not be found one by one again: all of them are
-//! fitted at once, and whatever this part does not need is left out, statement by statement.
+//! The part does not see what is held out, and has to need by itself what it is to predict that with. Several
+//! effects need not be found one by one again: all of them are fitted at once, and whatever this part does
+//! not need is left out, statement by statement.
 
 use crate::modal::fit::{ANY, ModalFit, SetOut};
 use crate::modal::search::ModalSearch;
 use crate::modal::searcher::{Named, Searcher};
 
 impl Searcher<'_> {
-    /// A search that needs nothing but several effects found before, or some of them; `None` where there are none such, or this recording needs none of them.
+    /// A search that needs nothing but several effects found before, or some of them; `None` where there are
+    /// none such, or this recording needs none of them.
     pub(super) fn found_again(&self, none: &ModalFit) -> Option<ModalSearch> {
         let known = self.known.filter(|known| known.found.len() > 1)?;
         let names: Vec<usize> =

@@ -1,8 +1,10 @@
 //! What is known of an effect along the ridge that its place and its sizes share.
 //!
-//! A mass that is heavier the nearer it is to a clamp does much the same to every mode, and so do a mass and a spring whose places are traded for their sizes. Derivatives where a fit came
-//! to rest say how the ridge sets out there, and nothing of where it leads or ends. So the fit is repeated with the effect held at places on either side, as far as these are
-//! credible: the evidence at each is the density of the place, and what the sizes are there, with the deviations that they have there, makes up theirs.
+//! A mass that is heavier the nearer it is to a clamp does much the same to every mode, and so do a mass and
+//! a spring whose places are traded for their sizes. Derivatives where a fit came to rest say how the ridge
+//! sets out there, and nothing of where it leads or ends. So the fit is repeated with the effect held at
+//! places on either side, as far as these are credible: the evidence at each is the density of the place, and
+//! what the sizes are there, with the deviations that they have there, makes up theirs.
 
 use crate::Hypothesis;
 use crate::along_body::{abscissa, is_on_beam};
@@ -24,7 +26,8 @@ const HALVINGS: usize = 60;
 /// Probability below and above a 95 % interval.
 const TAIL: f64 = 0.025;
 
-/// An effect held at a place: ln of the density there, and what its free coordinates are, with their standard deviations.
+/// An effect held at a place: ln of the density there, and what its free coordinates are, with their standard
+/// deviations.
 #[derive(Debug, Clone)]
 struct Held {
     ln: f64,
@@ -39,10 +42,12 @@ pub(super) struct Along {
     parts: Vec<(f64, Held)>,
     /// ln of the evidence, of all places about where the fit came to rest.
     pub ln: f64,
-    /// Index of the place among the effect's free coordinates, and where the least and the greatest of them that is credible lies.
+    /// Index of the place among the effect's free coordinates, and where the least and the greatest of them
+    /// that is credible lies.
     at: usize,
     range: [f64; 2],
-    /// The hypothesis in the middle of the probability, where the most probable one is as large as is possible: the end of what is credible is no estimate of it.
+    /// The hypothesis in the middle of the probability, where the most probable one is as large as is
+    /// possible: the end of what is credible is no estimate of it.
     pub middle: Option<Hypothesis>,
 }
 
@@ -150,7 +155,8 @@ impl Ridge<'_> {
         Some((fit, held))
     }
 
-    /// Places away from the `middle`, by steps of about this size to the side of its sign, as far as they are credible.
+    /// Places away from the `middle`, by steps of about this size to the side of its sign, as far as they are
+    /// credible.
     fn side(&self, middle: &(ModalFit, Held), mut step: f64) -> Vec<Held> {
         let (mut from, mut all) = (middle.clone(), Vec::new());
         for _ in 0..MOST_STEPS {
@@ -174,7 +180,8 @@ impl Ridge<'_> {
 }
 
 impl Searcher<'_> {
-    /// Effect `index` of `named` along its body, if it sits on one that bends: elsewhere a place and its sizes are as good as linear.
+    /// Effect `index` of `named` along its body, if it sits on one that bends: elsewhere a place and its
+    /// sizes are as good as linear.
     pub(super) fn along(&self, named: &Named, index: usize) -> Option<Along> {
         let hypothesis = &named.fit.hypothesis;
         let effect = hypothesis.effects().into_iter().nth(index)?;

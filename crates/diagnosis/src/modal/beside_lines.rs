@@ -1,4 +1,5 @@
-//! What a comparison by modes leaves to the lines: whether it is in doubt, and what of it lines are asked for.
+//! What a comparison by modes leaves to the lines: whether it is in doubt, and what of it lines are asked
+//! for.
 
 use crate::Hypothesis;
 use crate::candidate::Candidate;
@@ -16,11 +17,13 @@ use jointscope_fixture::{Effect, EffectKind};
 #[derive(Debug, Clone)]
 pub(crate) struct Explaining {
     pub fit: Fit,
-    /// Whether it explains the modes without any error of the model, so that nothing large can be left out beside it.
+    /// Whether it explains the modes without any error of the model, so that nothing large can be left out
+    /// beside it.
     pub is_sure: bool,
 }
 
-/// What the modes led to, fitted to lines, where that leaves no more than noise: the more strictly if the modes seem to need an error of the model.
+/// What the modes led to, fitted to lines, where that leaves no more than noise: the more strictly if the
+/// modes seem to need an error of the model.
 pub(super) fn fitted_to_lines(fitter: &Fitter, named: &Named) -> Option<Fit> {
     // What will hardly come down to the noise is given up.
     let noise = explained(fitter.observation, fitter.settings) * fitter.observation.degrees() as f64;
@@ -29,21 +32,24 @@ pub(super) fn fitted_to_lines(fitter: &Fitter, named: &Named) -> Option<Fit> {
 }
 
 impl ModalJudgement {
-    /// Whether the comparison rests on modes that may not be all there are, a free fit short of the noise or modes without a partner, or on records that
-    /// are not alike, and a search by lines may do better.
+    /// Whether the comparison rests on modes that may not be all there are, a free fit short of the noise or
+    /// modes without a partner, or on records that are not alike, and a search by lines may do better.
     pub(crate) fn is_dubious(&self, fitter: &Fitter) -> bool {
         let alone = self.search.best.fit.paired.pairing.alone();
-        // Records taken one after another, their noise told by scatter alone: an outlier among their gains passes for an error of all gains.
+        // Records taken one after another, their noise told by scatter alone: an outlier among their gains
+        // passes for an error of all gains.
         let unsure = self.is_unexplained() && fitter.observation.has_scatter_for_noise();
         let has_poles = self.free_fit_chi2_per_dof <= fitter.settings.modal.hopeless;
-        // Errors of gains may be of any size among modes, one channel's gain for instance, which then is held against itself.
+        // Errors of gains may be of any size among modes, one channel's gain for instance, which then is held
+        // against itself.
         let gain = self.search.best.fit.has_gains_beyond(&self.features.known.scales);
         let is_doubted = || alone != 0.0 || unsure || gain || self.is_beyond_errors(fitter);
         self.is_incomplete_but_usable(fitter) || (has_poles && is_doubted())
     }
 
-    /// Whether errors of a structure's model, however large, leave more than noise: a sensor that loads some FRFs and others not gives these other poles, which no hypothesis without it
-    /// has, and names that stand for errors are no better.
+    /// Whether errors of a structure's model, however large, leave more than noise: a sensor that loads some
+    /// FRFs and others not gives these other poles, which no hypothesis without it has, and names that stand
+    /// for errors are no better.
     fn is_beyond_errors(&self, fitter: &Fitter) -> bool {
         let observation = fitter.observation;
         let Some(structural) = self.features.structural(observation) else { return false };
@@ -52,7 +58,8 @@ impl ModalJudgement {
         structural.chi2 / degrees > explained(observation, fitter.settings)
     }
 
-    /// Whether frequencies, damping and shapes of the best hypothesis are right to the noise, and gains of records are not known to be wrong: lines know of none.
+    /// Whether frequencies, damping and shapes of the best hypothesis are right to the noise, and gains of
+    /// records are not known to be wrong: lines know of none.
     pub(crate) fn has_right_modes(&self) -> bool {
         self.errors[1].is_none() && !self.states_gain
     }
@@ -64,12 +71,14 @@ impl ModalJudgement {
             && self.free_fit_chi2_per_dof <= hopeless
     }
 
-    /// Whether a free fit that needed all it may for the noise, as what relaxes or damps heavily makes it need, leaves no doubt of the names, and these explain the modes.
+    /// Whether a free fit that needed all it may for the noise, as what relaxes or damps heavily makes it
+    /// need, leaves no doubt of the names, and these explain the modes.
     pub(crate) fn stands_out(&self, fitter: &Fitter) -> bool {
         self.verdict == Verdict::Explained && self.has_no_rival(fitter)
     }
 
-    /// Whether modes are far less probable without any of the names, at least in part explained by them, and by no others nearly as well.
+    /// Whether modes are far less probable without any of the names, at least in part explained by them, and
+    /// by no others nearly as well.
     pub(crate) fn has_no_rival(&self, fitter: &Fitter) -> bool {
         let ModalSettings { free_fit_limit, no_rival_within, .. } = fitter.settings.modal;
         let best = &self.search.best;
@@ -89,8 +98,9 @@ impl ModalJudgement {
         !matches!(self.verdict, Verdict::Consistent | Verdict::Explained)
     }
 
-    /// What explains the recording without any error of the model, by its modes and down to the noise of its lines: the best of those that do. Where
-    /// errors of the usual size do not explain the modes either, or these are dubious or right whatever their evidence says, lines decide alone, but more strictly.
+    /// What explains the recording without any error of the model, by its modes and down to the noise of its
+    /// lines: the best of those that do. Where errors of the usual size do not explain the modes either, or
+    /// these are dubious or right whatever their evidence says, lines decide alone, but more strictly.
     pub(crate) fn exact(&self, fitter: &Fitter) -> Option<Explaining> {
         let by_lines = self.is_unexplained() || self.is_dubious(fitter) || self.has_right_modes();
         // What modes tell from the best is no better on lines.
@@ -113,8 +123,9 @@ impl ModalJudgement {
         })
     }
 
-    /// Whether modes that need no error of the model tell what explains them from `other`, which explains the lines with quantities bent: an antiresonance lies where what is left of
-    /// higher modes puts it, a thousandth of which refutes every name on lines but one that bends enough to follow.
+    /// Whether modes that need no error of the model tell what explains them from `other`, which explains the
+    /// lines with quantities bent: an antiresonance lies where what is left of higher modes puts it, a
+    /// thousandth of which refutes every name on lines but one that bends enough to follow.
     pub(crate) fn tells_from(&self, fitter: &Fitter, other: &Hypothesis) -> bool {
         let Named { fit, exact, names } = &self.search.best;
         let effects = other.effects();
@@ -128,8 +139,9 @@ impl ModalJudgement {
         *exact && is_clear && self.nearly_exact(fitter).is_some()
     }
 
-    /// The findings of the lines; beside one alone the one name that the modes hold more probable, where errors of the model as usual leave them so. Each is as probable as the
-    /// other then: what lines hold against that name is the very thing that such errors make.
+    /// The findings of the lines; beside one alone the one name that the modes hold more probable, where
+    /// errors of the model as usual leave them so. Each is as probable as the other then: what lines hold
+    /// against that name is the very thing that such errors make.
     pub(crate) fn with_its_own_name(&self, fitter: &Fitter, mut findings: Vec<Finding>) -> Vec<Finding> {
         let effects = self.search.best.fit.hypothesis.effects();
         let ([own], [finding]) = (&effects[..], &mut findings[..]) else { return findings };
@@ -149,8 +161,8 @@ impl ModalJudgement {
         findings
     }
 
-    /// What explains the modes, fitted to lines, where it leaves little more than noise there: lines show what is beside the modes of a real structure too, and need not refute what
-    /// these say.
+    /// What explains the modes, fitted to lines, where it leaves little more than noise there: lines show
+    /// what is beside the modes of a real structure too, and need not refute what these say.
     pub(crate) fn nearly_exact(&self, fitter: &Fitter) -> Option<Explaining> {
         if !self.names_all() {
             return None;
@@ -163,7 +175,8 @@ impl ModalJudgement {
         is_near.then_some(Explaining { fit: on_lines, is_sure: *exact })
     }
 
-    /// Names that lines may be asked for where errors of the usual size do not explain the modes: the most probable by themselves, and quantities that are wrong.
+    /// Names that lines may be asked for where errors of the usual size do not explain the modes: the most
+    /// probable by themselves, and quantities that are wrong.
     pub(crate) fn in_question(&self, fitter: &Fitter) -> Vec<Candidate> {
         if !self.is_unexplained() {
             return Vec::new();

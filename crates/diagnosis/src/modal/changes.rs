@@ -59,7 +59,8 @@ impl States<'_> {
         ModeState { frequency: was[0].hypot(now[0]), damping_ratio: was[1].hypot(now[1]) }
     }
 
-    /// The mode that is now what mode `b` was, of those that the model does not have: the nearest of either to the other.
+    /// The mode that is now what mode `b` was, of those that the model does not have: the nearest of either
+    /// to the other.
     fn unpaired(&self, b: usize) -> Option<usize> {
         let of_baseline = &self.calibrated.paired.pairing.pairs;
         let was = |b: &usize| !of_baseline.iter().any(|(other, _)| other == b);

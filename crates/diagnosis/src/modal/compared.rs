@@ -27,8 +27,8 @@ pub(crate) struct Before {
 }
 
 impl ModalJudgement {
-    /// Compares a fixture with a recording by modes; `None` where there are no modes to compare. Of a recording that lacks what is held out of
-    /// another, those effects are tried that were `known` there.
+    /// Compares a fixture with a recording by modes; `None` where there are no modes to compare. Of a
+    /// recording that lacks what is held out of another, those effects are tried that were `known` there.
     pub(crate) fn of(
         fitter: &Fitter,
         nominal: &Hypothesis,
@@ -56,8 +56,9 @@ impl ModalJudgement {
         Some(ModalJudgement { states_gain, ..Judge { searcher, search }.judged(features.clone()) })
     }
 
-    /// What has changed since a `baseline` of the same structure: the fixture is calibrated on it, its error there is taken off, and what differs beyond
-    /// repetition is searched for. `None` where the two have no modes in common.
+    /// What has changed since a `baseline` of the same structure: the fixture is calibrated on it, its error
+    /// there is taken off, and what differs beyond repetition is searched for. `None` where the two have no
+    /// modes in common.
     pub(crate) fn since(
         fitter: &Fitter,
         baseline: &Observation,

@@ -123,7 +123,8 @@ impl LeastSquares for Descent<'_> {
 }
 
 impl Problem<'_> {
-    /// Where parameters come to rest at these sizes of the error, with derivatives taken there, and the evidence by these.
+    /// Where parameters come to rest at these sizes of the error, with derivatives taken there, and the
+    /// evidence by these.
     pub(super) fn settled(
         &self,
         paired: &PairedModes,
@@ -138,7 +139,8 @@ impl Problem<'_> {
         let promised_there = descent.promised(&point, &descent.equations(&point, &derivatives, &()));
         let (linear, evidence) =
             self.evidence(&point, priors, &derivatives, (&paired.comparison, Some(sizes)))?;
-        // Of a fit at errors of nothing that finds they are not, the parameters are still to move, however still they stand there.
+        // Of a fit at errors of nothing that finds they are not, the parameters are still to move, however
+        // still they stand there.
         let factor = Cholesky::of(paired.comparison.count(), &paired.comparison.covariance(&evidence.sizes))?;
         let there = Descent { factor, ..descent };
         let promised = there.promised(&point, &there.equations(&point, &derivatives, &()));

@@ -1,7 +1,8 @@
 //! Where else along its body an effect that was found explains the modes.
 //!
-//! A mass near a node of one mode and one near a node of another may do the same to all natural frequencies there are, and on a beam that is held alike at both ends two
-//! places mirror each other. A fit comes to rest at one of them, and an interval about that says nothing of the others.
+//! A mass near a node of one mode and one near a node of another may do the same to all natural frequencies
+//! there are, and on a beam that is held alike at both ends two places mirror each other. A fit comes to rest
+//! at one of them, and an interval about that says nothing of the others.
 
 use crate::along_body::{Abscissae, place_of_last};
 use crate::modal::fit::{ModalFit, SetOut};
@@ -9,8 +10,8 @@ use crate::modal::searcher::{Named, STARTS, Searcher};
 use crate::modal::starts::Start;
 
 impl Searcher<'_> {
-    /// Singles with other places of those that are the most probable, where the recording needs any: one whose size is told from nothing is to be had at a place that is a little less
-    /// probable than the first.
+    /// Singles with other places of those that are the most probable, where the recording needs any: one
+    /// whose size is told from nothing is to be had at a place that is a little less probable than the first.
     pub(super) fn at_other_places(&self, none: &Named, singles: Vec<Named>) -> Vec<Named> {
         let Some(first) = singles.first() else { return singles };
         if first.fit.ln - none.fit.ln < self.needed_over(none, first) {
@@ -26,8 +27,9 @@ impl Searcher<'_> {
         all
     }
 
-    /// Effect `index` of `best` at other places of its body, where these explain the modes nearly as well or better in the company of the others: the most probable of each place first. `base` is
-    /// the same without it.
+    /// Effect `index` of `best` at other places of its body, where these explain the modes nearly as well or
+    /// better in the company of the others: the most probable of each place first. `base` is the same without
+    /// it.
     pub(super) fn elsewhere(&self, base: &Named, best: &Named, index: usize, none: &ModalFit) -> Vec<Named> {
         let own = best.names[index];
         let effect = &best.fit.hypothesis.effects()[index];

@@ -1,7 +1,9 @@
 //! What a model leaves out of every joint alike.
 //!
-//! Whoever takes one strip for massless takes all of them so. To him that is one omission; to a search by single names it is one for each joint, none of which explains the recording
-//! without the others. Here a kind at every joint is tried at once, as one statement among all. How large it is at each joint is fitted, told and stated joint by joint.
+//! Whoever takes one strip for massless takes all of them so. To him that is one omission; to a search by
+//! single names it is one for each joint, none of which explains the recording without the others. Here a
+//! kind at every joint is tried at once, as one statement among all. How large it is at each joint is fitted,
+//! told and stated joint by joint.
 
 use crate::candidate::Candidate;
 use crate::modal::fit::SetOut;
@@ -10,7 +12,8 @@ use jointscope_fixture::{Effect, Place};
 use std::collections::BTreeSet;
 
 impl Searcher<'_> {
-    /// The candidates of each kind that a model leaves out of every joint, one for each joint, where several joints may lack it.
+    /// The candidates of each kind that a model leaves out of every joint, one for each joint, where several
+    /// joints may lack it.
     fn of_every_joint(&self) -> Vec<Vec<usize>> {
         let mut all: Vec<Vec<usize>> = Vec::new();
         for (index, candidate) in self.candidates.iter().enumerate() {
@@ -28,7 +31,8 @@ impl Searcher<'_> {
         all
     }
 
-    /// What effects of these names state, by their places in the list: a kind at every joint is one statement, every other effect is one by itself.
+    /// What effects of these names state, by their places in the list: a kind at every joint is one
+    /// statement, every other effect is one by itself.
     pub(super) fn statements(&self, names: &[usize]) -> Vec<Vec<usize>> {
         let whole = self.of_every_joint().into_iter().filter(|all| all.iter().all(|c| names.contains(c)));
         let places = |all: Vec<usize>| (0..names.len()).filter(|&at| all.contains(&names[at])).collect();
@@ -41,11 +45,13 @@ impl Searcher<'_> {
         statements
     }
 
-    /// Fits of `base` with one kind of effect more, at every joint that may lack it and does not have it yet: the best of each kind, the most probable first.
+    /// Fits of `base` with one kind of effect more, at every joint that may lack it and does not have it yet:
+    /// the best of each kind, the most probable first.
     pub(super) fn at_every_joint(&self, base: &Named) -> Vec<Named> {
         let mut groups = self.of_every_joint();
         groups.iter_mut().for_each(|names| names.retain(|c| !base.names.contains(c)));
-        // Ratios that are free as well would follow their own errors beside another effect: how all joints dissipate is asked where it may be all that is left out.
+        // Ratios that are free as well would follow their own errors beside another effect: how all joints
+        // dissipate is asked where it may be all that is left out.
         let frees_ratios = |names: &[usize]| self.candidates[names[0]].kind.spec().within_modal_ratios;
         groups.retain(|names| names.len() > 1 && (base.names.is_empty() || !frees_ratios(names)));
         if groups.is_empty() || !self.problem.work.allows("what every joint may lack, by modes") {
@@ -74,7 +80,8 @@ impl Searcher<'_> {
         fits
     }
 
-    /// Effects of all these names to set out from: at each joint the same multiple of what it has, or as they are known.
+    /// Effects of all these names to set out from: at each joint the same multiple of what it has, or as they
+    /// are known.
     fn starts_at_all(&self, names: &[usize]) -> Vec<Vec<Effect>> {
         let candidates: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
         if let Some(known) = self.known {

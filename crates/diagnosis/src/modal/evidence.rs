@@ -6,8 +6,9 @@ use crate::modal::problem::{Iterate, Problem};
 use jointscope_model_error::{ErrorSizes, Linear, ModelEvidence, SharedFeatures};
 
 impl Problem<'_> {
-    /// The linear model at a point and its evidence. Whether an effect's spring is damped beyond the fixture's damping nobody knows beforehand: it is as probable that
-    /// it is not, and what has no dashpot pays for none.
+    /// The linear model at a point and its evidence. Whether an effect's spring is damped beyond the
+    /// fixture's damping nobody knows beforehand: it is as probable that it is not, and what has no dashpot
+    /// pays for none.
     pub(super) fn evidence(
         &self,
         point: &Iterate,
@@ -33,8 +34,9 @@ impl Problem<'_> {
         Some((linear, evidence))
     }
 
-    /// The linear model at a point and its evidence. Of a coordinate that stopped at its bound the linear model knows no bound: a spring that would be negative does
-    /// not explain what only a negative one explains. The lesser evidence counts, with such coordinates free or where they are.
+    /// The linear model at a point and its evidence. Of a coordinate that stopped at its bound the linear
+    /// model knows no bound: a spring that would be negative does not explain what only a negative one
+    /// explains. The lesser evidence counts, with such coordinates free or where they are.
     fn evidence_within_bounds(
         &self,
         point: &Iterate,

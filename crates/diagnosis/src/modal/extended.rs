@@ -7,8 +7,8 @@ use crate::modal::searcher::{Named, STARTS, Searcher};
 use crate::modal::starts::{Start, own_frequency};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A hypothesis whose last effect came to the end of its start's reach, with the reach about where it stands; `None` where it did not, or where that lies
-/// outside of what the candidate's starts span.
+/// A hypothesis whose last effect came to the end of its start's reach, with the reach about where it stands;
+/// `None` where it did not, or where that lies outside of what the candidate's starts span.
 fn farther(hypothesis: &Hypothesis, candidate: &Candidate) -> Option<Hypothesis> {
     let last = hypothesis.effect_count().checked_sub(1)?;
     let own = hypothesis.range_of(last);
@@ -33,8 +33,9 @@ pub(super) fn best_of_each(mut fits: Vec<Named>) -> Vec<Named> {
 }
 
 impl Searcher<'_> {
-    /// Fits of `base` with one effect more, the most probable first: the `refined` best candidates, each from so many starts; and the candidates all of whose starts
-    /// lie too far below the best of these to be fitted.
+    /// Fits of `base` with one effect more, the most probable first: the `refined` best candidates, each from
+    /// so many starts; and the candidates all of whose starts lie too far below the best of these to be
+    /// fitted.
     pub(super) fn extended(&self, base: &Named, refined: usize, each: usize) -> (Vec<Named>, Vec<usize>) {
         if let Some(known) = self.known {
             return (self.fitted(base, self.starts_at(base, known), SetOut::Both), Vec::new());
@@ -51,7 +52,8 @@ impl Searcher<'_> {
         let is_costly = || self.problem.work.spent() > self.settings.costly;
         let set_out = if is_costly() { SetOut::Usual } else { SetOut::Both };
         let mut fits = self.fitted(base, chosen, set_out);
-        // Only what explains the modes shows that others need not be fitted; where fits are cheap they all are, for some may lead the fixture itself out of a false minimum.
+        // Only what explains the modes shows that others need not be fitted; where fits are cheap they all
+        // are, for some may lead the fixture itself out of a false minimum.
         let explains =
             fits.first().filter(|best| self.is_adequate(&best.fit)).map_or(ANY, |best| best.fit.ln);
         let best = if is_costly() { explains } else { ANY };
@@ -63,8 +65,9 @@ impl Searcher<'_> {
         (fits, far)
     }
 
-    /// The best fit of each candidate, these and from starts that follow the foremost: one of each first. Where something `explains` the modes, with this ln p, only what came near it sets
-    /// out from elsewhere too.
+    /// The best fit of each candidate, these and from starts that follow the foremost: one of each first.
+    /// Where something `explains` the modes, with this ln p, only what came near it sets out from elsewhere
+    /// too.
     fn with_these(
         &self,
         base: &Named,
@@ -84,7 +87,8 @@ impl Searcher<'_> {
         best_of_each(fits)
     }
 
-    /// Fits from starts with one effect more than `base`, the best of each candidate, the most probable first. What lies far below the first of them is not fitted closely.
+    /// Fits from starts with one effect more than `base`, the best of each candidate, the most probable
+    /// first. What lies far below the first of them is not fitted closely.
     fn fitted(&self, base: &Named, starts: Vec<Start>, set_out: SetOut) -> Vec<Named> {
         let tried = self.watch.count(starts.len());
         let fit = |start: Start, least: f64| {
@@ -100,7 +104,8 @@ impl Searcher<'_> {
         best_of_each(fits)
     }
 
-    /// ln p below which no fit with more than `base` matters: what that explains needs nothing that explains less.
+    /// ln p below which no fit with more than `base` matters: what that explains needs nothing that explains
+    /// less.
     pub(super) fn least_beside(&self, base: &Named) -> f64 {
         if self.is_adequate(&base.fit) { base.fit.ln } else { ANY }
     }
@@ -146,8 +151,9 @@ impl Searcher<'_> {
         Some(Named { names, exact: self.is_exact(&fit), fit })
     }
 
-    /// The same without its effects at these places in ascending order, from where it stands and with errors as large: what gains much at a size of nothing has only led out of a false minimum.
-    /// What stays below `least` in ln p is not followed to its rest.
+    /// The same without its effects at these places in ascending order, from where it stands and with errors
+    /// as large: what gains much at a size of nothing has only led out of a false minimum. What stays below
+    /// `least` in ln p is not followed to its rest.
     pub(super) fn without(&self, named: &Named, statement: &[usize], least: f64) -> Option<Named> {
         let mut names = named.names.clone();
         let mut start = named.fit.hypothesis.clone();
@@ -161,14 +167,16 @@ impl Searcher<'_> {
         Some(Named { names, exact: self.is_exact(&fit), fit })
     }
 
-    /// Singles with the most probable ones fitted from each other's quantities and sizes of error too: names are compared where all have set out alike.
+    /// Singles with the most probable ones fitted from each other's quantities and sizes of error too: names
+    /// are compared where all have set out alike.
     pub(super) fn exchanged(&self, singles: Vec<Named>) -> Vec<Named> {
         let (targets, sources, _) = self.settings.exchanged;
         let sources = singles[..singles.len().min(sources)].to_vec();
         self.fitted_beside(&sources, singles, targets)
     }
 
-    /// Singles with the most probable ones, so many at the most, fitted from the quantities and sizes of error of these fits too.
+    /// Singles with the most probable ones, so many at the most, fitted from the quantities and sizes of
+    /// error of these fits too.
     pub(super) fn fitted_beside(&self, sources: &[Named], singles: Vec<Named>, targets: usize) -> Vec<Named> {
         let far = self.settings.exchanged.2;
         let best = singles.first().map_or(0.0, |first| first.fit.ln);

@@ -1,4 +1,5 @@
-//! A recording as its modes tell it, and what is known of a model's error beforehand: what hypotheses are held against.
+//! A recording as its modes tell it, and what is known of a model's error beforehand: what hypotheses are
+//! held against.
 
 use crate::modal::problem::Problem;
 use crate::modal::sizes::known;
@@ -75,7 +76,8 @@ fn of(observation: &Observation) -> WeightedFrfs<'_> {
 pub(crate) fn recorded(observation: &Observation, nominal: &Hypothesis) -> Option<RecordedModes> {
     let fixture = nominal.to_fixture().ok()?;
     let recording = of(observation);
-    // Where nothing but the FRFs tells their noise, every ripple looks like a mode: no more are asked for than a model may have.
+    // Where nothing but the FRFs tells their noise, every ripple looks like a mode: no more are asked for
+    // than a model may have.
     let expected = || jointscope_model_error::modes_within(&fixture, observation.frfs());
     let orders = observation
         .has_scatter_for_noise()

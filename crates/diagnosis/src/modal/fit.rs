@@ -31,13 +31,15 @@ pub(crate) struct ModalFit {
     pub ln: f64,
 }
 
-/// The sizes of error that a fit sets out with. One that begins with errors too small follows whatever features are recorded most sharply, and its errors then grow
-/// to suit it; one that begins with large ones may rest content with them.
+/// The sizes of error that a fit sets out with. One that begins with errors too small follows whatever
+/// features are recorded most sharply, and its errors then grow to suit it; one that begins with large ones
+/// may rest content with them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum SetOut {
     /// The usual ones.
     Usual,
-    /// These, and where the fit ends with larger ones also those that the start asks for; the more probable end counts.
+    /// These, and where the fit ends with larger ones also those that the start asks for; the more probable
+    /// end counts.
     Both,
     /// Those of a fit nearby besides.
     Beside(ErrorSizes),
@@ -54,7 +56,8 @@ impl ModalFit {
         departures.map(|(at, prior)| ((at - prior.mean) / prior.std).abs()).fold(0.0, f64::max)
     }
 
-    /// Whether the features' misfit, errors of the model at their sizes and departures counted, is no larger than chance makes it.
+    /// Whether the features' misfit, errors of the model at their sizes and departures counted, is no larger
+    /// than chance makes it.
     pub(crate) fn leaves_chance(&self) -> bool {
         let comparison = &self.paired.comparison;
         let Some(factor) = Cholesky::of(comparison.count(), &comparison.covariance(&self.evidence.sizes))
@@ -97,7 +100,8 @@ impl Problem<'_> {
         self.fitted_from(start, self.paired_modes(start)?, priors, (None, SetOut::Both, ANY))
     }
 
-    /// [`Problem::fitted`], and from pairings beside the most likely one at the start where errors of the usual size do not do.
+    /// [`Problem::fitted`], and from pairings beside the most likely one at the start where errors of the
+    /// usual size do not do.
     pub(crate) fn fitted_however_paired(&self, start: &Hypothesis, priors: &[Prior]) -> Option<ModalFit> {
         let paired = self.paired_modes(start)?;
         let others = paired.pairing.others(self.recorded, &paired.modelled);
@@ -114,8 +118,9 @@ impl Problem<'_> {
         others.into_iter().map(fitted).fold(first, more_probable)
     }
 
-    /// [`Problem::fitted`] from a start whose modes are `paired` already, with derivatives known from nearby where there are any. What stays below `least` in ln p is not followed to
-    /// its rest, nor from other sizes of error.
+    /// [`Problem::fitted`] from a start whose modes are `paired` already, with derivatives known from nearby
+    /// where there are any. What stays below `least` in ln p is not followed to its rest, nor from other
+    /// sizes of error.
     pub(crate) fn fitted_from(
         &self,
         start: &Hypothesis,
@@ -160,7 +165,8 @@ impl Problem<'_> {
         sizes.to_array().iter().zip(self.sizes.to_array()).all(|(size, usual)| *size <= usual)
     }
 
-    /// Sizes of the error and parameters taken in turn from a point with its derivatives, and from these sizes or those that it asks for.
+    /// Sizes of the error and parameters taken in turn from a point with its derivatives, and from these
+    /// sizes or those that it asks for.
     fn fitted_with(
         &self,
         (mut point, mut derivatives): (Iterate, Vec<Vec<f64>>),
@@ -215,14 +221,16 @@ impl Problem<'_> {
             let gained = best.as_ref().zip(before).is_none_or(|(best, before)| best.ln - before >= CONVERGED);
             idle = if gained { 0 } else { idle + usize::from(stands) };
             let ends = best.is_some() && (same || idle == IDLE_ROUNDS);
-            // Modes may have moved past others on the way, and shapes with them, or into the band or out of it.
+            // Modes may have moved past others on the way, and shapes with them, or into the band or out of
+            // it.
             let strays = strayed < MOST_STRAYS && point.modelled.strays(self.recorded);
             if last || !(ends || strays) {
                 continue;
             }
             let Some(anew) = self.paired_modes(&point.hypothesis) else { break };
             let alike = anew.pairing.pairs == paired.pairing.pairs;
-            // Where the fit set out, damping may have turned the shapes' phases by far more or less than it does here.
+            // Where the fit set out, damping may have turned the shapes' phases by far more or less than it
+            // does here.
             let damped_like = anew.comparison.damps_like(&paired.comparison, self.sizes.damping);
             let turned = alike && strayed < MOST_STRAYS && !damped_like;
             if ends && alike && anew.modelled.counts_like(&paired.modelled) && !turned {
@@ -246,8 +254,10 @@ impl Problem<'_> {
 }
 
 impl Rest {
-    /// The evidence that a fit at these `sizes` has where it stands still: at the sizes that are asked for, if they have `settled`, or else at its own. What is asked for says nothing of a
-    /// point from where the parameters are still to move, or the sizes to shrink; at its own sizes a fit may stand still all the same.
+    /// The evidence that a fit at these `sizes` has where it stands still: at the sizes that are asked for,
+    /// if they have `settled`, or else at its own. What is asked for says nothing of a point from where the
+    /// parameters are still to move, or the sizes to shrink; at its own sizes a fit may stand still all the
+    /// same.
     fn evidence_at_rest(&self, settled: bool, sizes: ErrorSizes) -> Option<ModelEvidence> {
         if settled && self.promised < STANDS_STILL {
             return Some(self.evidence);

@@ -78,15 +78,18 @@ impl Judge<'_> {
     fn verdict(&self) -> Verdict {
         let (none, best) = (&self.search.none, &self.search.best);
         let adequate = self.searcher.is_adequate(&best.fit) || self.outweighs_adequate_fixture();
-        // Of a recording that no poles explain, names say nothing, but for what has changed since another one like it.
+        // Of a recording that no poles explain, names say nothing, but for what has changed since another one
+        // like it.
         let hopeless = self.searcher.problem.recorded.chi2_per_dof > self.searcher.settings.hopeless;
         if hopeless && !self.searcher.calibrated && !(best.names.is_empty() && adequate) {
             return Verdict::Unexplained;
         }
-        // Errors of the model, or these and those of the records' gains: a channel of the wrong sign looks like gains that are off by all they are.
+        // Errors of the model, or these and those of the records' gains: a channel of the wrong sign looks
+        // like gains that are off by all they are.
         let model = |fit: &ModalFit| squares(&self.searcher.problem.relative_sizes(fit));
         let all = |fit: &ModalFit| squares(&self.searcher.problem.relative_sizes_with_gains(fit));
-        // Or those of the modes in the band alone, if no others grow for that: what lies above the band is the model's affair too, but not what a name is about.
+        // Or those of the modes in the band alone, if no others grow for that: what lies above the band is
+        // the model's affair too, but not what a name is about.
         let modes = |fit: &ModalFit| squares(&self.searcher.problem.relative_sizes_of_modes(fit));
         let part = self.searcher.settings.part;
         let in_part = || {
@@ -95,7 +98,8 @@ impl Judge<'_> {
                 || all(&best.fit) < part * all(none)
                 || modes(&best.fit) < part * modes(none) && model(&best.fit) < model(none)
         };
-        // Gains of records may be off by anything beside a name, and from one test to the next. By themselves they are what is left out.
+        // Gains of records may be off by anything beside a name, and from one test to the next. By themselves
+        // they are what is left out.
         let gains = best.fit.has_gains_beyond(self.searcher.problem.sizes) && !self.searcher.calibrated;
         match (best.names.is_empty(), adequate) {
             (true, true) if !gains => Verdict::Consistent,
@@ -106,9 +110,11 @@ impl Judge<'_> {
         }
     }
 
-    /// Whether a name that asks for errors a little larger than usual gains as much as it must over a fixture that is adequate without it, even with its errors held at what is usual: a size
-    /// is known to some tenths of itself only, and what is more probable than something adequate is no worse for it. Other than `is_as_probable_with_errors_within`, by which a fit is adequate
-    /// by itself, it compares two fits, and the density of the features alone pays for the errors that are held.
+    /// Whether a name that asks for errors a little larger than usual gains as much as it must over a fixture
+    /// that is adequate without it, even with its errors held at what is usual: a size is known to some
+    /// tenths of itself only, and what is more probable than something adequate is no worse for it. Other
+    /// than `is_as_probable_with_errors_within`, by which a fit is adequate by itself, it compares two fits,
+    /// and the density of the features alone pays for the errors that are held.
     fn outweighs_adequate_fixture(&self) -> bool {
         let (none, best) = (&self.search.none, &self.search.best);
         let (largest, departure) = self.searcher.settings.adequate;
@@ -127,9 +133,10 @@ impl Judge<'_> {
         gained > self.searcher.needed_over(&self.searcher.alone(none.clone()), best)
     }
 
-    /// What is left, as multiples of what is usual, of the kinds of error in whose stead factors on channels' signals stand: those that are beyond what is usual without them,
-    /// and with them no more than the lesser part. A signal has no part in natural frequencies, a gain none in what lies above the band: whatever these are wrong by, the factor may
-    /// be all that the others lack. Nothing where others grow for it.
+    /// What is left, as multiples of what is usual, of the kinds of error in whose stead factors on channels'
+    /// signals stand: those that are beyond what is usual without them, and with them no more than the lesser
+    /// part. A signal has no part in natural frequencies, a gain none in what lies above the band: whatever
+    /// these are wrong by, the factor may be all that the others lack. Nothing where others grow for it.
     fn made_up_for_by_signals(&self, best: &ModalFit) -> Vec<f64> {
         let of = |fit: &ModalFit| self.searcher.problem.relative_sizes_of_signals(fit);
         let (without, with) = (of(&self.search.none), of(best));
@@ -143,7 +150,8 @@ impl Judge<'_> {
             .collect()
     }
 
-    /// Probabilities of the names that may stand in one effect's stead, the best one's at all of its places; the rest to one is something not listed.
+    /// Probabilities of the names that may stand in one effect's stead, the best one's at all of its places;
+    /// the rest to one is something not listed.
     fn probabilities(&self, own: usize, all: &[Named], elsewhere: &[Named]) -> Vec<(usize, f64, Hypothesis)> {
         let highest = all.iter().map(|n| n.fit.ln).fold(f64::NEG_INFINITY, f64::max);
         let weight = |named: &Named| {
@@ -159,8 +167,8 @@ impl Judge<'_> {
         all.iter().filter_map(of).collect()
     }
 
-    /// The name by which a hypothesis stands in the stead of `own`, and the hypothesis with that effect as its last: of a kind at every joint the one at the same joint, else what was added
-    /// last.
+    /// The name by which a hypothesis stands in the stead of `own`, and the hypothesis with that effect as
+    /// its last: of a kind at every joint the one at the same joint, else what was added last.
     fn named_at(&self, own: usize, named: &Named) -> Option<(usize, Hypothesis)> {
         let last = named.names.len().checked_sub(1)?;
         let candidates = self.searcher.candidates;
@@ -176,8 +184,8 @@ impl Judge<'_> {
         Some((named.names[at], with_it_last))
     }
 
-    /// The weight, against one for the best hypothesis, of physics that none covers: the larger the errors and departures that even the best
-    /// needs, the more.
+    /// The weight, against one for the best hypothesis, of physics that none covers: the larger the errors
+    /// and departures that even the best needs, the more.
     fn unlisted(&self, best: &ModalFit) -> f64 {
         let (usual, most) = self.searcher.settings.unlisted;
         let problem = &self.searcher.problem;

@@ -39,7 +39,8 @@ pub(crate) struct ModalJudgement {
     pub states_gain: bool,
     /// Whether it is of what has changed since a baseline.
     pub since_baseline: bool,
-    /// The fixture by itself and the best hypothesis, at the most probable sizes of error: what is said of quantities and effects.
+    /// The fixture by itself and the best hypothesis, at the most probable sizes of error: what is said of
+    /// quantities and effects.
     pub stated: [Hypothesis; 2],
     /// Covariance of the best one's coordinates with sizes that may be larger.
     pub covariance: Option<Covariance>,
@@ -70,7 +71,8 @@ impl ModalJudgement {
         }
     }
 
-    /// The same where lines are at odds with it: stated as a part, and something that is not listed as probable as it is at the most.
+    /// The same where lines are at odds with it: stated as a part, and something that is not listed as
+    /// probable as it is at the most.
     pub(crate) fn doubted(&self) -> Self {
         let names = self.names.iter().map(|all| {
             let stated: f64 = all.iter().map(|(_, probability, _)| probability).sum();
@@ -80,7 +82,8 @@ impl ModalJudgement {
         ModalJudgement { verdict: Verdict::PartlyExplained, names: names.collect(), ..self.clone() }
     }
 
-    /// Whether the modes need nothing, neither an effect nor an error of the model: what is left, if anything, only lines can show.
+    /// Whether the modes need nothing, neither an effect nor an error of the model: what is left, if
+    /// anything, only lines can show.
     pub(crate) fn needs_nothing(&self) -> bool {
         self.verdict == Verdict::Consistent && self.search.best.exact
     }
@@ -95,7 +98,8 @@ impl ModalJudgement {
         self.verdict == Verdict::Explained
     }
 
-    /// What was found, and the most probable effects by themselves: what a search of a part of the recording may choose from.
+    /// What was found, and the most probable effects by themselves: what a search of a part of the recording
+    /// may choose from.
     pub(crate) fn known(&self, settings: &ModalSettings) -> Known {
         let singles = &self.search.singles;
         let least = singles.first().map_or(0.0, |first| first.fit.ln) - settings.no_rival_within;
@@ -106,7 +110,8 @@ impl ModalJudgement {
         }
     }
 
-    /// The effects that were fitted by themselves, each kind at each place once and at its best, the most probable first.
+    /// The effects that were fitted by themselves, each kind at each place once and at its best, the most
+    /// probable first.
     pub(crate) fn tried(&self) -> Vec<Tried> {
         let mut all: Vec<Tried> = Vec::new();
         for single in &self.search.singles {
@@ -118,7 +123,8 @@ impl ModalJudgement {
         all
     }
 
-    /// The models that the comparison ended with, as stated or as they predict, on lines; `within` is the fixture refitted on lines.
+    /// The models that the comparison ended with, as stated or as they predict, on lines; `within` is the
+    /// fixture refitted on lines.
     pub(crate) fn search_on(
         &self,
         observation: &Observation,
@@ -132,8 +138,8 @@ impl ModalJudgement {
         Search { nominal, refitted, repaired, ..within.clone() }
     }
 
-    /// Candidates that modes tell from the one effect of `hypothesis`, each fitted to them by itself, by more than `needed` in ln p, or not even fitted, so far below
-    /// did it start.
+    /// Candidates that modes tell from the one effect of `hypothesis`, each fitted to them by itself, by more
+    /// than `needed` in ln p, or not even fitted, so far below did it start.
     pub(crate) fn told_from(
         &self,
         hypothesis: &Hypothesis,

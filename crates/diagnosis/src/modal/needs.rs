@@ -1,8 +1,10 @@
 //! Which effects modes need that were found on lines.
 //!
-//! The noise of lines knows no error of the model: where a body is a little softer than rigid, or a strip's foot gives way, some effect of the list takes that
-//! up, at a size that means nothing, and a χ² little above the noise asks for it. Modes tell such an imitation from what is there. If the model may be in error as models are, what is
-//! there still gains 7 in ln p and more (effects hidden in lumped structures), and what imitates an error gains 3 at the most and mostly loses.
+//! The noise of lines knows no error of the model: where a body is a little softer than rigid, or a strip's
+//! foot gives way, some effect of the list takes that up, at a size that means nothing, and a χ² little above
+//! the noise asks for it. Modes tell such an imitation from what is there. If the model may be in error as
+//! models are, what is there still gains 7 in ln p and more (effects hidden in lumped structures), and what
+//! imitates an error gains 3 at the most and mostly loses.
 
 use crate::Hypothesis;
 use crate::candidate::Candidate;
@@ -19,13 +21,15 @@ use crate::settings::modal::judgement::CERTAIN;
 use crate::settings::modal::sizes::BEYOND_ERRORS;
 use jointscope_fixture::{Effect, EffectKind};
 
-/// Whether an effect is a gain larger than records' gains are wrong by: no error of a model is one, and to allow for errors as large would be to hold it against itself.
+/// Whether an effect is a gain larger than records' gains are wrong by: no error of a model is one, and to
+/// allow for errors as large would be to hold it against itself.
 fn is_gain_beyond_errors(effect: &Effect, usual: f64) -> bool {
     effect.kind == EffectKind::ChannelGain && (effect.value(0) - 1.0).abs() > BEYOND_ERRORS * usual
 }
 
-/// A search on lines but for the effects that modes do not need and lines hardly miss; `None` where there are none, or modes do not tell. Modes that the comparison `by_modes` of
-/// the same recording explains tell in any case, others only where errors of the usual size would do in an effect's stead.
+/// A search on lines but for the effects that modes do not need and lines hardly miss; `None` where there are
+/// none, or modes do not tell. Modes that the comparison `by_modes` of the same recording explains tell in
+/// any case, others only where errors of the usual size would do in an effect's stead.
 pub(crate) fn without_imitations(
     fitter: &Fitter,
     search: &Search,
@@ -65,8 +69,9 @@ pub(crate) fn without_imitations(
     fewer.then(|| Search { repaired, ..search.clone() })
 }
 
-/// Whether one effect brings the lines down to their noise and errors of a structure's model, however large, do not: what a filter does to a mass line, or a sensor that loads one
-/// FRF and not the other, no mode tells, and no error imitates.
+/// Whether one effect brings the lines down to their noise and errors of a structure's model, however large,
+/// do not: what a filter does to a mass line, or a sensor that loads one FRF and not the other, no mode
+/// tells, and no error imitates.
 fn explains_more_than_errors(fitter: &Fitter, search: &Search, features: &Features) -> bool {
     let Fitter { observation, settings, .. } = *fitter;
     let repaired = &search.repaired;
@@ -83,8 +88,8 @@ fn explains_more_than_errors(fitter: &Fitter, search: &Search, features: &Featur
     errors - chi2 > needed * repaired.inflation(observation)
 }
 
-/// What one effect gains in ln p on lines that modes leave out, those of a suspension, where it brings all lines down to their noise: over values that err there all by the size that suits
-/// them best, without it.
+/// What one effect gains in ln p on lines that modes leave out, those of a suspension, where it brings all
+/// lines down to their noise: over values that err there all by the size that suits them best, without it.
 fn gain_below_modes(fitter: &Fitter, search: &Search, features: &Features) -> f64 {
     let observation = fitter.observation;
     let repaired = &search.repaired;
@@ -104,7 +109,8 @@ fn gain_below_modes(fitter: &Fitter, search: &Search, features: &Features) -> f6
     (0.5 * (values * variance.ln() + without / variance - with)).max(0.0)
 }
 
-/// The effect of a hypothesis that modes need least, by its index; `None` where each gains as much as is `needed`. That it is one name of many has been paid for on lines.
+/// The effect of a hypothesis that modes need least, by its index; `None` where each gains as much as is
+/// `needed`. That it is one name of many has been paid for on lines.
 fn least_needed(
     fitter: &Fitter,
     (features, explained): (&Features, bool),
@@ -155,7 +161,8 @@ mod tests {
         Fixture::from_json(&text).unwrap()
     }
 
-    /// What is asked of the effect that is hidden in the blocks, fitted to lines: 400 of them to 1 kHz, known to 0.4 %.
+    /// What is asked of the effect that is hidden in the blocks, fitted to lines: 400 of them to 1 kHz, known
+    /// to 0.4 %.
     fn of_hidden<T>(effect: &Effect, held: bool, asked: impl Fn(&Fitter, &Search, &Features) -> T) -> T {
         let truth = blocks(held).with_physics(vec![effect.clone()]).unwrap();
         let pairs = [("3", "1"), ("4", "1")].map(|(o, i)| FrfPair::transverse(o, i));

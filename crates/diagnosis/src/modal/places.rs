@@ -16,7 +16,8 @@ pub(crate) struct Places {
 }
 
 impl Searcher<'_> {
-    /// Where along its body effect `index` of the best hypothesis may sit, each place with its share of the probability of all.
+    /// Where along its body effect `index` of the best hypothesis may sit, each place with its share of the
+    /// probability of all.
     pub(super) fn places(&self, search: &ModalSearch, index: usize) -> Places {
         let best = &search.best;
         let own = self.along(best, index);

@@ -1,8 +1,10 @@
 //! Models that are to predict where nobody measured.
 //!
-//! What is said of effects and quantities is said at the sizes of error that are most probable: a natural frequency that is off by its error is as probable as quantities that are
-//! off by theirs. Such a model predicts badly all the same, for beside a resonance a small error of frequency is a large one of an FRF. One that is to predict has the effects
-//! that are stated, and quantities that follow recorded natural frequencies and damping more closely: as closely as takes none of them farther from what is stated than
+//! What is said of effects and quantities is said at the sizes of error that are most probable: a natural
+//! frequency that is off by its error is as probable as quantities that are off by theirs. Such a model
+//! predicts badly all the same, for beside a resonance a small error of frequency is a large one of an FRF.
+//! One that is to predict has the effects that are stated, and quantities that follow recorded natural
+//! frequencies and damping more closely: as closely as takes none of them farther from what is stated than
 //! chance, or than it already is.
 
 use crate::departures::farthest;
@@ -23,8 +25,9 @@ use jointscope_inference::descend;
 use jointscope_model_error::ErrorSizes;
 
 impl ModalJudgement {
-    /// The comparison with its models as they predict lines; `within` is the fixture refitted on them. What explains the modes in part only, and leaves more than a part of what lines
-    /// miss without it, is not stated, unless the fixture by itself comes as close only by a departure beyond chance.
+    /// The comparison with its models as they predict lines; `within` is the fixture refitted on them. What
+    /// explains the modes in part only, and leaves more than a part of what lines miss without it, is not
+    /// stated, unless the fixture by itself comes as close only by a departure beyond chance.
     pub(crate) fn predicted(&self, fitter: &Fitter, within: &Search) -> (Self, Search) {
         let settings = &fitter.settings.modal;
         let models = self.predicting(fitter.observation.work(), settings);
@@ -47,7 +50,8 @@ impl ModalJudgement {
         (self.clone(), search)
     }
 
-    /// Whether lines miss far more with what explains the modes than without: gains of all records, which may be off by anything among modes, make up for a gain that is none.
+    /// Whether lines miss far more with what explains the modes than without: gains of all records, which may
+    /// be off by anything among modes, make up for a gain that is none.
     fn spoils_lines(&self, fitter: &Fitter, search: &Search) -> bool {
         let spoils = fitter.settings.modal.spoils;
         let Search { refitted, repaired, .. } = search;
@@ -55,8 +59,9 @@ impl ModalJudgement {
         !self.since_baseline && misses > spoils * missed && repaired.chi2 > spoils * spoils * refitted.chi2
     }
 
-    /// Whether lines miss much of a recording that modes do not tell: what a free fit took residual terms for passes for errors in what lies outside the band, and what it took a mode for
-    /// is held against no name. What a calibrated model is off by in both states is neither.
+    /// Whether lines miss much of a recording that modes do not tell: what a free fit took residual terms for
+    /// passes for errors in what lies outside the band, and what it took a mode for is held against no name.
+    /// What a calibrated model is off by in both states is neither.
     fn leaves_much_where_incomplete(&self, fitter: &Fitter, search: &Search) -> bool {
         let ModalSettings { most_left_where_incomplete: most, slight, .. } = fitter.settings.modal;
         let Search { refitted, repaired, .. } = search;
@@ -72,8 +77,9 @@ impl ModalJudgement {
         modes.any(|(at, mode)| mode.pole.damping_ratio > NO_PEAK && pairs.iter().all(|(own, _)| *own != at))
     }
 
-    /// The same with the model as it is stated where that comes closer to the recorded lines than one that follows frequencies, and with the fixture as it was given where that
-    /// does: where frequencies stay far off, following them says nothing of what is between them.
+    /// The same with the model as it is stated where that comes closer to the recorded lines than one that
+    /// follows frequencies, and with the fixture as it was given where that does: where frequencies stay far
+    /// off, following them says nothing of what is between them.
     fn no_farther(&self, observation: &Observation, search: Search) -> Search {
         let closer = |fit: Fit, stated: &Hypothesis| match Fit::at(stated.clone(), observation) {
             Some(other) if other.chi2 < fit.chi2 => other,
@@ -88,7 +94,8 @@ impl ModalJudgement {
         Search { refitted, repaired, ..search }
     }
 
-    /// The fixture by itself and the best hypothesis as they are to predict; what that takes is counted in `work`.
+    /// The fixture by itself and the best hypothesis as they are to predict; what that takes is counted in
+    /// `work`.
     fn predicting(&self, work: &Work, settings: &ModalSettings) -> [Hypothesis; 2] {
         let problem = self.features.problem(work);
         let [none, best] = [&self.search.none, &self.search.best.fit];
@@ -121,7 +128,8 @@ impl<'a> Quantities<'a> {
         Some(Quantities { problem, fit, found, start: Iterate { hypothesis, modelled, residual } })
     }
 
-    /// The hypothesis whose errors are the first of these `shares` of the most probable `sizes` that chance allows; the last one that can be fitted where it allows none.
+    /// The hypothesis whose errors are the first of these `shares` of the most probable `sizes` that chance
+    /// allows; the last one that can be fitted where it allows none.
     fn following(&self, sizes: &ErrorSizes, shares: &[f64]) -> Option<Hypothesis> {
         let reach = farthest(self.found).map_or(DEPARTED, |(_, deviations)| deviations.max(DEPARTED));
         let within = |model: &Hypothesis| farthest(model).is_none_or(|(_, deviations)| deviations <= reach);

@@ -28,15 +28,16 @@ pub(crate) fn priors(hypothesis: &Hypothesis, candidates: &[&Candidate]) -> Vec<
     all
 }
 
-/// The priors of a hypothesis each of whose effects goes by one of the names `all`; `None` where one goes by none.
+/// The priors of a hypothesis each of whose effects goes by one of the names `all`; `None` where one goes by
+/// none.
 pub(crate) fn priors_among(hypothesis: &Hypothesis, all: &[Candidate]) -> Option<Vec<Prior>> {
     let named = |effect: &Effect| all.iter().find(|candidate| candidate.names(effect));
     let candidates: Option<Vec<&Candidate>> = hypothesis.effects().iter().map(named).collect();
     Some(priors(hypothesis, &candidates?))
 }
 
-/// Priors of the free parameters of effect `index`: logarithms over the range of a search's starts, abscissae over the body, sizes of either sign about
-/// nothing.
+/// Priors of the free parameters of effect `index`: logarithms over the range of a search's starts, abscissae
+/// over the body, sizes of either sign about nothing.
 fn of_effect(hypothesis: &Hypothesis, index: usize, candidate: &Candidate) -> Vec<Prior> {
     let spec = candidate.kind.spec();
     let in_series = matches!(spec.parameters[spec.size.parameter].motion, Motion::Logarithm { .. });

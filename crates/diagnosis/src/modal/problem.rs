@@ -1,4 +1,5 @@
-//! The recorded modes as a problem of inference: those of a hypothesis, paired with them, and how they move with its coordinates.
+//! The recorded modes as a problem of inference: those of a hypothesis, paired with them, and how they move
+//! with its coordinates.
 
 use crate::Hypothesis;
 use crate::modal::prior::Prior;
@@ -63,8 +64,9 @@ impl Problem<'_> {
         let shapes = |fixture: &Fixture| Shapes::of(fixture, self.recorded, &modelled.poles());
         let own = shapes(fixture)?;
         let mut comparison = SharedFeatures::new(self.recorded, &pairing, &modelled, &own);
-        // Dashpots turn phases as the fixture has them, or, if its damping is that of the modes as they stand, not at all; and its damping is no proportional one of a structure with
-        // effects. Which of both it is, if either, nobody knows.
+        // Dashpots turn phases as the fixture has them, or, if its damping is that of the modes as they
+        // stand, not at all; and its damping is no proportional one of a structure with effects. Which of
+        // both it is, if either, nobody knows.
         let springs = match hypothesis.without_dashpots() {
             Some(effects) if effects == hypothesis.effects() => Some(own),
             Some(effects) => hypothesis.to_fixture_with(effects).ok().and_then(|fixture| shapes(&fixture)),

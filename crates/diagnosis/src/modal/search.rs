@@ -41,8 +41,8 @@ fn highest(fits: impl Iterator<Item = Named>) -> Option<Named> {
 }
 
 impl ModalSearch {
-    /// Whether each of several effects gains as much as `needed` in ln p over the others, as far as these were tried: one that does not may imitate an error of
-    /// the model.
+    /// Whether each of several effects gains as much as `needed` in ln p over the others, as far as these
+    /// were tried: one that does not may imitate an error of the model.
     pub(crate) fn needs_all_of(&self, named: &Named, needed: f64) -> bool {
         let part = |fewer: &&Named| {
             fewer.names.len() + 1 == named.names.len() && fewer.names.iter().all(|c| named.names.contains(c))
@@ -75,7 +75,8 @@ impl Searcher<'_> {
         }
         singles = self.at_other_places(&start, singles);
         let none = start.fit.clone();
-        // Where neither the fixture nor any effect explains the modes, the right one may have set out from the wrong place.
+        // Where neither the fixture nor any effect explains the modes, the right one may have set out from
+        // the wrong place.
         let little = self.problem.work.spent() < self.settings.again;
         if little && !self.is_adequate(&none) && !singles.iter().any(|single| self.explains(single, &start)) {
             let (again, _) = self.extended(&start, self.settings.tried, self.settings.starts.1);
@@ -89,7 +90,8 @@ impl Searcher<'_> {
         ModalSearch { none, best, singles, far, more, alternatives, elsewhere, without }
     }
 
-    /// The best hypothesis, effects added to `start`, the fixture by itself, one after another while each gains what it has to; and what was tried of several effects together.
+    /// The best hypothesis, effects added to `start`, the fixture by itself, one after another while each
+    /// gains what it has to; and what was tried of several effects together.
     fn with_effects_added(&self, start: &Named, singles: &[Named]) -> (Named, Vec<Named>) {
         let none = &start.fit;
         let mut best = start.clone();
@@ -129,8 +131,9 @@ impl Searcher<'_> {
         (best, more)
     }
 
-    /// What a hypothesis `first` of several effects together comes to without one of them, where that gains over the `best` so far: a pair may be needed where neither effect alone is, or
-    /// one of them where the other has led it out of a false minimum.
+    /// What a hypothesis `first` of several effects together comes to without one of them, where that gains
+    /// over the `best` so far: a pair may be needed where neither effect alone is, or one of them where the
+    /// other has led it out of a false minimum.
     fn with_fewer_led_out(&self, first: &Named, best: &Named, none: &ModalFit) -> Option<Named> {
         if !self.gains(first, best) {
             return None;
@@ -143,7 +146,8 @@ impl Searcher<'_> {
         highest(parts).filter(is_better)
     }
 
-    /// The best hypothesis, effects exchanged for what explains more in the stead of one of them, and what may stand instead of each.
+    /// The best hypothesis, effects exchanged for what explains more in the stead of one of them, and what
+    /// may stand instead of each.
     fn with_effects_exchanged(
         &self,
         mut best: Named,
@@ -165,7 +169,8 @@ impl Searcher<'_> {
         (best, instead)
     }
 
-    /// Whether a hypothesis explains what `none`, the fixture by itself, does not, by as much as its names have to.
+    /// Whether a hypothesis explains what `none`, the fixture by itself, does not, by as much as its names
+    /// have to.
     fn explains(&self, named: &Named, none: &Named) -> bool {
         self.gains(named, none) && self.is_adequate(&named.fit) && self.is_told(named, &none.fit)
     }
@@ -175,14 +180,16 @@ impl Searcher<'_> {
         more.fit.ln - fewer.fit.ln > self.needed_over(fewer, more)
     }
 
-    /// The best with one effect more, or with a kind more at every joint, the most probable first. Where two effects are tried together neither need explain anything alone: then the best
-    /// singles are extended, and not the best alone.
+    /// The best with one effect more, or with a kind more at every joint, the most probable first. Where two
+    /// effects are tried together neither need explain anything alone: then the best singles are extended,
+    /// and not the best alone.
     fn with_one_more(&self, count: usize, (best, none): (&Named, &Named), singles: &[Named]) -> Vec<Named> {
         // Where the fixture does, or one effect beside it, no joint is asked.
         let suffices = best.names.is_empty()
             && (self.is_adequate(&best.fit) || singles.iter().any(|single| self.explains(single, none)));
         let mut ranked = if suffices { Vec::new() } else { self.at_every_joint(best) };
-        // What explains what the best does not is compared with single names when these are tried in its stead.
+        // What explains what the best does not is compared with single names when these are tried in its
+        // stead.
         let explains = |first: &Named| !self.is_adequate(&best.fit) && self.explains(first, none);
         if ranked.first().is_some_and(explains) {
             return ranked;
@@ -191,7 +198,8 @@ impl Searcher<'_> {
         ranked.extend(match (count, best.names.len()) {
             (1, _) => singles.to_vec(),
             (2, 0 | 1) => self.pairs(singles),
-            // What is the same at every joint may imitate two effects of which each is at one: it takes no more than one name.
+            // What is the same at every joint may imitate two effects of which each is at one: it takes no
+            // more than one name.
             (2, _) if self.statements(&best.names).len() == 1 && !self.is_adequate(&best.fit) => {
                 [self.pairs(singles), beside_best()].concat()
             }
@@ -210,7 +218,8 @@ impl Searcher<'_> {
         highest(alone).filter(|alone| alone.fit.ln > none.fit.ln).unwrap_or(none)
     }
 
-    /// The best singles each with one effect more; all but the best, and these two by two, only where that leaves an error of the model.
+    /// The best singles each with one effect more; all but the best, and these two by two, only where that
+    /// leaves an error of the model.
     fn pairs(&self, singles: &[Named]) -> Vec<Named> {
         let Some(first) = singles.first() else { return Vec::new() };
         let close = |s: &&Named| first.fit.ln - s.fit.ln < self.settings.bases.1;
@@ -228,8 +237,9 @@ impl Searcher<'_> {
         all
     }
 
-    /// The best singles two by two, from where each stands by itself. What imitates two effects is more probable than either of them, and by more than what is extended otherwise may lie
-    /// below it: a relaxing joint is stiffer and damped like one that is stiffer beside a window over the records.
+    /// The best singles two by two, from where each stands by itself. What imitates two effects is more
+    /// probable than either of them, and by more than what is extended otherwise may lie below it: a relaxing
+    /// joint is stiffer and damped like one that is stiffer beside a window over the records.
     fn two_by_two(&self, singles: &[Named]) -> Vec<Named> {
         let few = &singles[..singles.len().min(self.settings.two_by_two)];
         let beside = |(at, one)| few[at + 1..].iter().map(move |other: &Named| (one, other));

@@ -30,9 +30,11 @@ pub(crate) struct Searcher<'a> {
     pub candidates: &'a [Candidate],
     pub nominal: &'a Hypothesis,
     pub settings: &'a ModalSettings,
-    /// Where to set out from in place of all candidates' starts: the effects found in more than what is searched here.
+    /// Where to set out from in place of all candidates' starts: the effects found in more than what is
+    /// searched here.
     pub known: Option<&'a Known>,
-    /// Whether the fixture's quantities are where another recording of the structure put them, and stay there.
+    /// Whether the fixture's quantities are where another recording of the structure put them, and stay
+    /// there.
     pub calibrated: bool,
     /// Whether a hypothesis leaves no more than noise on lines.
     pub suffices: &'a (dyn Fn(&Named) -> bool + Sync),
@@ -50,7 +52,8 @@ impl Searcher<'_> {
         self.candidates.iter().position(|candidate| candidate.names(effect))
     }
 
-    /// Where one effect more may be put: where `base` stands, and beside the fixture by itself at its stated quantities too.
+    /// Where one effect more may be put: where `base` stands, and beside the fixture by itself at its stated
+    /// quantities too.
     pub(super) fn bases<'b>(&'b self, base: &'b Named) -> Vec<&'b Hypothesis> {
         match base.names.is_empty() {
             true => vec![self.nominal, &base.fit.hypothesis],
@@ -69,15 +72,16 @@ impl Searcher<'_> {
         all
     }
 
-    /// What each statement that `more` has beyond `fewer` must gain in ln p: less where errors and departures beyond chance refute what has fewer and not what
-    /// has more.
+    /// What each statement that `more` has beyond `fewer` must gain in ln p: less where errors and departures
+    /// beyond chance refute what has fewer and not what has more.
     fn needed_beyond(&self, fewer: &Named, more: &Named) -> f64 {
         let refuted = !self.is_adequate(&fewer.fit) && self.is_adequate(&more.fit);
         let odds = if refuted { self.settings.odds_over_refuted } else { self.settings.odds };
         (self.candidates.len() as f64).ln() + odds.ln()
     }
 
-    /// What `more` must gain in ln p over `fewer`: for each statement that it makes beyond those the odds of one name among all, and for each effect that only completes one its own.
+    /// What `more` must gain in ln p over `fewer`: for each statement that it makes beyond those the odds of
+    /// one name among all, and for each effect that only completes one its own.
     pub(super) fn needed_over(&self, fewer: &Named, more: &Named) -> f64 {
         let [before, after] = [fewer, more].map(|named| self.statements(&named.names).len());
         let beyond = after.saturating_sub(before);
@@ -85,9 +89,10 @@ impl Searcher<'_> {
         beyond as f64 * self.needed_beyond(fewer, more) + completing as f64 * self.settings.odds.ln()
     }
 
-    /// Whether the size of every effect is told from nothing, the model's errors as large as they may well be: with few modes the most probable errors are
-    /// none, and whatever fits them exactly seems to be needed. What gains very much over nothing is told in any case, for a fixture may have ended in a false minimum; not
-    /// over a calibrated one, which stays where it is.
+    /// Whether the size of every effect is told from nothing, the model's errors as large as they may well
+    /// be: with few modes the most probable errors are none, and whatever fits them exactly seems to be
+    /// needed. What gains very much over nothing is told in any case, for a fixture may have ended in a false
+    /// minimum; not over a calibrated one, which stays where it is.
     pub(super) fn is_told(&self, named: &Named, none: &ModalFit) -> bool {
         let fit = &named.fit;
         let undoubted = self.settings.undoubted * self.statements(&named.names).len() as f64;
@@ -106,13 +111,15 @@ impl Searcher<'_> {
             .all(|index| fit.hypothesis.deviations_of(index, &covariance) >= least)
     }
 
-    /// Sizes of the model's error that may be larger than the most probable ones: what uncertainties are stated with.
+    /// Sizes of the model's error that may be larger than the most probable ones: what uncertainties are
+    /// stated with.
     pub(super) fn widened(&self, fit: &ModalFit) -> ErrorSizes {
         fit.linear.mean_sizes(&fit.paired.comparison, self.problem.prior(), &fit.evidence)
     }
 
-    /// What a fit gains in ln p over another where errors of the model have these sizes; nothing where the two compare other modes. Along the ridge of a mass that grows as it comes
-    /// nearer to a clamp its deviation says little, and this all the same that it is there.
+    /// What a fit gains in ln p over another where errors of the model have these sizes; nothing where the
+    /// two compare other modes. Along the ridge of a mass that grows as it comes nearer to a clamp its
+    /// deviation says little, and this all the same that it is there.
     fn gains_at(&self, sizes: &ErrorSizes, fit: &ModalFit, none: &ModalFit) -> f64 {
         let density = |fit: &ModalFit| fit.linear.ln_density(&fit.paired.comparison, sizes);
         let alike = fit.paired.pairing.pairs == none.paired.pairing.pairs;

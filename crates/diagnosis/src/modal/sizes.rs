@@ -10,7 +10,8 @@ use jointscope_model_error::{
 };
 use serde::Serialize;
 
-/// How wrong a model is, as relative standard deviations over its modes; zero where the noise explains what is left.
+/// How wrong a model is, as relative standard deviations over its modes; zero where the noise explains what
+/// is left.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct ModelError {
     /// Of natural frequencies.
@@ -64,7 +65,8 @@ pub(super) fn known(settings: &ModalSettings, fixture: &Fixture) -> SizePrior {
     let stated = Some(fixture.model_error()).filter(|stated| !stated.is_exact());
     let StatedError { frequency, damping, residue } = stated.unwrap_or_default();
     let usual = settings.usual;
-    // Where each record's gain is a quantity of its own, what is stated of it is all that is known: a further error of all gains would hide the one that is off.
+    // Where each record's gain is a quantity of its own, what is stated of it is all that is known: a further
+    // error of all gains would hide the one that is off.
     let by_record = fixture.channels().iter().any(|effect| matches!(effect.place, Place::Record(_)));
     let gain = if by_record { ErrorSizes::LEAST * usual.gain } else { usual.gain };
     let scales = ErrorSizes {
@@ -88,14 +90,16 @@ pub(super) fn known(settings: &ModalSettings, fixture: &Fixture) -> SizePrior {
 }
 
 impl ModalFit {
-    /// Whether errors of gains are larger than any beside what is `usual`: among modes they may be of any size.
+    /// Whether errors of gains are larger than any beside what is `usual`: among modes they may be of any
+    /// size.
     pub(crate) fn has_gains_beyond(&self, usual: &ErrorSizes) -> bool {
         self.evidence.sizes.gain > BEYOND_ERRORS * usual.gain
     }
 }
 
 impl Problem<'_> {
-    /// The sizes that the recording asks for, those that are stated included: what is stated may be too little.
+    /// The sizes that the recording asks for, those that are stated included: what is stated may be too
+    /// little.
     pub(crate) fn seen(&self, fit: &ModalFit) -> ModelEvidence {
         if !self.stated.contains(&true) {
             return fit.evidence;
@@ -104,8 +108,9 @@ impl Problem<'_> {
         freed.unwrap_or(fit.evidence)
     }
 
-    /// Whether what a fit needs of errors, as multiples of what is usual, and of departures, in standard deviations, is no more than `adequate`, and what these
-    /// leave of the features is chance: of a mass line that is off by a dozen times what is usual, errors of nothing are as probable as ones that large.
+    /// Whether what a fit needs of errors, as multiples of what is usual, and of departures, in standard
+    /// deviations, is no more than `adequate`, and what these leave of the features is chance: of a mass line
+    /// that is off by a dozen times what is usual, errors of nothing are as probable as ones that large.
     pub(crate) fn is_adequate(&self, fit: &ModalFit, adequate: (f64, f64)) -> bool {
         fit.largest_departure() <= adequate.1
             && (self.largest_size(fit) <= adequate.0
@@ -113,16 +118,19 @@ impl Problem<'_> {
             && fit.leaves_chance()
     }
 
-    /// Whether a fit is as probable with no error larger than so many times what is usual: ln of the evidence, the sizes' prior included, loses next to nothing by that. It is asked of one
-    /// fit by itself: a size is known to some tenths of itself only, the less the fewer modes there are. What may lose more, but less than it gained over a fixture that is adequate, is asked by
-    /// `outweighs_adequate_fixture` of `judge.rs`.
+    /// Whether a fit is as probable with no error larger than so many times what is usual: ln of the
+    /// evidence, the sizes' prior included, loses next to nothing by that. It is asked of one fit by itself:
+    /// a size is known to some tenths of itself only, the less the fewer modes there are. What may lose more,
+    /// but less than it gained over a fixture that is adequate, is asked by `outweighs_adequate_fixture` of
+    /// `judge.rs`.
     fn is_as_probable_with_errors_within(&self, most: f64, fit: &ModalFit) -> bool {
         let at = |sizes: &ErrorSizes| fit.linear.ln_evidence_at(&fit.paired.comparison, self.prior(), sizes);
         let both = at(&fit.evidence.sizes).zip(at(&self.no_larger(fit, most)));
         both.is_some_and(|(asked, held)| asked - held < AS_PROBABLE)
     }
 
-    /// Whether every mode has a partner and errors of the model gain less than this in ln p: among them another distribution of its damping, where no effect makes its own of that.
+    /// Whether every mode has a partner and errors of the model gain less than this in ln p: among them
+    /// another distribution of its damping, where no effect makes its own of that.
     pub(crate) fn is_exact(&self, fit: &ModalFit, gain: f64) -> bool {
         let least = self.sizes.times(ErrorSizes::LEAST);
         let comparison = &fit.paired.comparison;
@@ -139,8 +147,10 @@ impl Problem<'_> {
         self.relative_sizes_as_stated(fit).into_iter().fold(0.0, f64::max)
     }
 
-    /// The sizes of [`Problem::relative_sizes`] by which a hypothesis stands or falls: none of upper residuals beside effects where bodies are rigid; that of damping ratios by no less than a share of what the fixture states as their deviations.
-    /// Where effects have made other modes than those of which it states ratios, by no less than the whole: these get theirs from the others' damping.
+    /// The sizes of [`Problem::relative_sizes`] by which a hypothesis stands or falls: none of upper
+    /// residuals beside effects where bodies are rigid; that of damping ratios by no less than a share of
+    /// what the fixture states as their deviations. Where effects have made other modes than those of which
+    /// it states ratios, by no less than the whole: these get theirs from the others' damping.
     pub(crate) fn relative_sizes_as_stated(&self, fit: &ModalFit) -> Vec<f64> {
         let mut sizes = self.relative_sizes(fit);
         let stated = fit.hypothesis.deviation_of_damping();
@@ -148,14 +158,16 @@ impl Problem<'_> {
         if usual > self.sizes.damping {
             sizes[DAMPING] *= self.sizes.damping / usual;
         }
-        // Where a held block is rigid in the model, all that is above the band may be what it lacks: that refutes no name, and shows none to be needless.
+        // Where a held block is rigid in the model, all that is above the band may be what it lacks: that
+        // refutes no name, and shows none to be needless.
         if fit.hypothesis.effect_count() > 0 && !all_bend(fit.hypothesis.fixture()) {
             sizes[UPPER_RESIDUAL] = 0.0;
         }
         sizes
     }
 
-    /// The sizes of error of a fit, none of those by which it stands or falls larger than so many times what is usual.
+    /// The sizes of error of a fit, none of those by which it stands or falls larger than so many times what
+    /// is usual.
     pub(crate) fn no_larger(&self, fit: &ModalFit, most: f64) -> ErrorSizes {
         let mut sizes = fit.evidence.sizes.to_array();
         for (size, relative) in sizes.iter_mut().zip(self.relative_sizes_as_stated(fit)) {
@@ -164,8 +176,8 @@ impl Problem<'_> {
         ErrorSizes::from_array(sizes)
     }
 
-    /// Sizes of the errors as multiples of what is usual, or of what is stated: the sizes that the recording asks for.
-    /// Gains are the test's, not the model's.
+    /// Sizes of the errors as multiples of what is usual, or of what is stated: the sizes that the recording
+    /// asks for. Gains are the test's, not the model's.
     pub(crate) fn relative_sizes(&self, fit: &ModalFit) -> Vec<f64> {
         let without = ErrorSizes { gain: 0.0, ..self.seen(fit).sizes };
         self.over_usual(&without)
@@ -181,7 +193,8 @@ impl Problem<'_> {
         })
     }
 
-    /// The same by kind, gains of records among them and without those of natural frequencies and damping, in which a channel's signal has no part.
+    /// The same by kind, gains of records among them and without those of natural frequencies and damping, in
+    /// which a channel's signal has no part.
     pub(crate) fn relative_sizes_of_signals(&self, fit: &ModalFit) -> Vec<f64> {
         self.over_usual(&ErrorSizes { frequency: 0.0, damping: 0.0, ..self.seen(fit).sizes })
     }
@@ -196,7 +209,8 @@ impl Problem<'_> {
         sizes.to_array().iter().zip(usual).map(|(size, usual)| size / usual).collect()
     }
 
-    /// The error of a fitted model. A stated size is told as stated, unless the recording asks for more than `adequate` times as much.
+    /// The error of a fitted model. A stated size is told as stated, unless the recording asks for more than
+    /// `adequate` times as much.
     pub(crate) fn error(&self, fit: &ModalFit, adequate: f64) -> ModelError {
         let seen = self.seen(fit);
         let (sizes, found) = (self.sizes.to_array(), seen.sizes.to_array());

@@ -52,8 +52,9 @@ fn resonating_at(candidate: &Candidate, hz: &[f64]) -> Vec<Effect> {
     others.flat_map(|start| hz.iter().map(move |hz| at(start, *hz))).collect()
 }
 
-/// The same model, stiff as it is by a change of stiffness and not by departures of what it consists of; `None` where these do not depart. From farther off no linear model tells how well the
-/// change makes up for them.
+/// The same model, stiff as it is by a change of stiffness and not by departures of what it consists of;
+/// `None` where these do not depart. From farther off no linear model tells how well the change makes up for
+/// them.
 pub(super) fn relieved(base: &Hypothesis, candidate: &Candidate) -> Option<Hypothesis> {
     let fixture = base.fixture();
     let owner = match &candidate.place {
@@ -97,8 +98,9 @@ fn by_density(all: &mut [Start]) {
 }
 
 impl Searcher<'_> {
-    /// Starts with one effect more than `base`, the densest first. Those that compare other modes than their base are compared with the others by their own derivatives, the
-    /// best of all and the best of each candidate, those with a partner more and the others by themselves; the rest are left out.
+    /// Starts with one effect more than `base`, the densest first. Those that compare other modes than their
+    /// base are compared with the others by their own derivatives, the best of all and the best of each
+    /// candidate, those with a partner more and the others by themselves; the rest are left out.
     pub(super) fn starts(&self, base: &Named) -> Vec<Start> {
         // What resonates makes a mode more: where every mode has its partner, nothing of the kind is there.
         let partners = base.fit.paired.pairing.alone() == 0.0;
@@ -133,8 +135,9 @@ impl Searcher<'_> {
         self.rescored(scored)
     }
 
-    /// Starts that are worth a fit: so many of `each` of the `refined` best candidates, the densest first. A mode that the base does not have is the plainest sign of what
-    /// is left out, however poorly what would make it starts: the best of those that have it come before all others.
+    /// Starts that are worth a fit: so many of `each` of the `refined` best candidates, the densest first. A
+    /// mode that the base does not have is the plainest sign of what is left out, however poorly what would
+    /// make it starts: the best of those that have it come before all others.
     pub(super) fn chosen(&self, starts: Vec<Start>, refined: usize, each: usize) -> Vec<Start> {
         let (mut partners, others): (Vec<Start>, Vec<Start>) =
             starts.into_iter().partition(|start| start.partners);
@@ -156,8 +159,8 @@ impl Searcher<'_> {
         partners
     }
 
-    /// Frequencies (Hz) at which the recording has a mode that a fit has not, and halfway from there to the next one that it has: what resonates beside a mode parts
-    /// the two.
+    /// Frequencies (Hz) at which the recording has a mode that a fit has not, and halfway from there to the
+    /// next one that it has: what resonates beside a mode parts the two.
     fn unmatched(&self, fit: &ModalFit) -> Vec<f64> {
         let PairedModes { modelled, pairing, .. } = &fit.paired;
         let recorded = &self.problem.recorded.modes;
@@ -180,12 +183,14 @@ impl Searcher<'_> {
         known.all().filter_map(start).collect()
     }
 
-    /// Starts the densest first, those that compare other modes than their base by derivatives of their own as far as they are worth it.
+    /// Starts the densest first, those that compare other modes than their base by derivatives of their own
+    /// as far as they are worth it.
     pub(super) fn rescored(&self, scored: Vec<Start>) -> Vec<Start> {
         let (mut apart, mut alike): (Vec<Start>, Vec<Start>) =
             scored.into_iter().partition(|start| start.apart);
         by_density(&mut apart);
-        // Those with a partner more and the others by themselves: of a spring to ground a start that makes no mode more says nothing of one that does.
+        // Those with a partner more and the others by themselves: of a spring to ground a start that makes no
+        // mode more says nothing of one that does.
         let mut seen = vec![[false; 2]; self.candidates.len()];
         let mut ranks = [0; 2];
         apart.retain(|start| {

@@ -54,7 +54,8 @@ fn bar(shear: f64) -> Fixture {
 
 #[test]
 fn a_fit_stands_where_it_would_come_to_rest_at_the_errors_that_it_asks_for() {
-    // What departs is far from what is stated, and hardly seen: within the usual errors of natural frequencies.
+    // What departs is far from what is stated, and hardly seen: within the usual errors of natural
+    // frequencies.
     for factor in [1.4, 1.6, 1.8, 2.0] {
         let lump = Effect::new(EffectKind::AddedMass, Place::Body("A".into()), None, &[0.1, 1e-3]);
         let truth = bar(factor * SHEAR);
@@ -86,7 +87,8 @@ const BLOCKS: &str = r#"{
   "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 } } },
   "damping": { "modal_ratios": [{ "value": 0.004, "std": 6e-4 }, { "value": 0.006, "std": 9e-4 }] } }"#;
 
-/// What is recorded with noise of a quarter of a per cent and errors of the shapes of half of one, which no two FRFs share.
+/// What is recorded with noise of a quarter of a per cent and errors of the shapes of half of one, which no
+/// two FRFs share.
 fn with_errors_of_shapes(truth: &Fixture, pairs: &[FrfPair], lines: &SpectralLines) -> Observation {
     let frfs = synthesize(truth, pairs, lines, Instrument::AsRecorded).unwrap();
     let count = lines.len();
@@ -154,7 +156,8 @@ fn errors_are_held_to_a_multiple_of_what_is_usual_kind_by_kind() {
     assert!(pairs.clone().all(|(held, expected)| (held / expected - 1.0).abs() < 1e-12), "{held:?}");
 }
 
-/// What `of` makes of blocks of which B holds a lump of 0.2 kg, judged by modes without any name, and of hypotheses with lumps of other masses.
+/// What `of` makes of blocks of which B holds a lump of 0.2 kg, judged by modes without any name, and of
+/// hypotheses with lumps of other masses.
 fn judged_beside_lump(of: impl FnOnce(&Fitter, &Search, ModalJudgement, &dyn Fn(f64) -> Hypothesis)) {
     let fixture = Fixture::from_json(BLOCKS).unwrap();
     let nominal = Hypothesis::nominal(&fixture, false);
@@ -230,7 +233,8 @@ fn gains_of_records_that_are_anything_leave_no_fixture_consistent_and_the_odd_re
 
 #[test]
 fn a_dashpot_is_known_no_better_than_the_damping_of_the_modes_that_it_damps() {
-    // It turns the phases of their shapes too, which are recorded far more sharply than any model has their damping.
+    // It turns the phases of their shapes too, which are recorded far more sharply than any model has their
+    // damping.
     let values = [0.1, 0.06, 200.0, 0.01];
     let resonator = Effect::new(EffectKind::AttachedResonator, Place::Body("B".into()), None, &values);
     let fixture = Fixture::from_json(BLOCKS).unwrap();
@@ -258,7 +262,8 @@ fn a_dashpot_is_known_no_better_than_the_damping_of_the_modes_that_it_damps() {
 
 #[test]
 fn a_joint_that_is_softer_than_stated_may_be_damped_in_proportion_all_the_same() {
-    // The strip turns on a rotational spring at its far end, and damping ratios are those of the assembly with that. An effect leaves the fixture's damping matrix as it stands.
+    // The strip turns on a rotational spring at its far end, and damping ratios are those of the assembly
+    // with that. An effect leaves the fixture's damping matrix as it stands.
     let (length, bending, spring) = (0.065_f64, 2.07e11 * 3.67e-10, 1200.0);
     let [a, b, d] =
         [length.powi(3) / 3.0 / bending, length.powi(2) / 2.0 / bending, length / bending + 1.0 / spring];
@@ -299,11 +304,13 @@ fn a_shear_deformation_leaves_the_rotary_inertia_of_its_section_open() {
     }
     let hypothesis = nominal.with(shear.effect(0));
     let known = priors(&hypothesis, &[shear]).pop().unwrap();
-    // A coordinate of one is the start: none at all and three times as much are both as likely as not to surprise.
+    // A coordinate of one is the start: none at all and three times as much are both as likely as not to
+    // surprise.
     assert!(known.mean == 0.0 && (2.0..5.0).contains(&known.std), "{known:?}");
 }
 
-/// What is found of a lump on block B of a fixture that is known exactly, `gains` of the four records being off by so much: without and with what errors of the modes leave uncertain of it.
+/// What is found of a lump on block B of a fixture that is known exactly, `gains` of the four records being
+/// off by so much: without and with what errors of the modes leave uncertain of it.
 fn found_with_gains(gains: [f64; 4]) -> [Vec<Estimate>; 2] {
     let fixture = Fixture::from_json(BLOCKS).unwrap();
     let nominal = Hypothesis::nominal(&fixture, true);
@@ -341,7 +348,8 @@ fn what_lines_find_is_no_surer_than_the_errors_that_the_modes_need_beside_it() {
     assert_eq!(both[1].value, lines[1].value);
 }
 
-/// Two blocks on a strip with one of them held to ground by a spring, N/m, and a ripple over frequency on all records that is none of a structure's.
+/// Two blocks on a strip with one of them held to ground by a spring, N/m, and a ripple over frequency on all
+/// records that is none of a structure's.
 fn rippled(spring: f64, ripple: f64) -> FrfSet {
     let fixture = Fixture::from_json(BLOCKS).unwrap();
     let support = Effect::new(EffectKind::Support, Place::Body("B".into()), None, &[0.11, spring, 0.0]);
@@ -401,8 +409,8 @@ fn damping_is_off_by_no_more_than_was_stated_of_it_or_is_usual() {
     let features = Features::of(&observation, &nominal, &Settings::default().modal).unwrap();
     let problem = features.problem(observation.work());
     let mut fit = problem.fitted(&nominal, &priors(&nominal, &[])).unwrap();
-    // Features that ask for errors of damping so many times the usual one of 10 %, whatever the parameters: of n modes that are all off by d, with a half-normal prior of scale s,
-    // d² = τ²(1 + τ²/(n s²)).
+    // Features that ask for errors of damping so many times the usual one of 10 %, whatever the parameters:
+    // of n modes that are all off by d, with a half-normal prior of scale s, d² = τ²(1 + τ²/(n s²)).
     let ask = |fit: &mut ModalFit, times: f64| {
         let n = fit.paired.pairing.pairs.len();
         let off = times * problem.sizes.damping * (1.0 + times.powi(2) / n as f64).sqrt();

@@ -22,8 +22,8 @@ impl Turns {
         Turns { last: [0.0; KINDS], shares: [1.0; KINDS] }
     }
 
-    /// The sizes to go on with. Where one turns back it goes less far, and a little farther again where it does not: parameters and sizes that ask for each other in turn come to no
-    /// rest otherwise.
+    /// The sizes to go on with. Where one turns back it goes less far, and a little farther again where it
+    /// does not: parameters and sizes that ask for each other in turn come to no rest otherwise.
     pub(super) fn toward(&mut self, asked: &ErrorSizes, from: &ErrorSizes) -> ErrorSizes {
         let (from, asked) = (from.to_array(), asked.to_array());
         ErrorSizes::from_array(std::array::from_fn(|kind| {

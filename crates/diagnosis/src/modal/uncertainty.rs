@@ -1,8 +1,9 @@
 //! What errors of the model leave uncertain of effects that lines have found.
 //!
-//! Where noise of lines is told from their scatter, a model may leave no more than that and still be in error: its modes, told from many lines each, are off by far more than
-//! their noise. Intervals by the noise of the lines are then too narrow by as much. The errors that the modes need beside what was found, at the very parameters that lines
-//! have led to, make intervals of their own, and the wider of the two counts.
+//! Where noise of lines is told from their scatter, a model may leave no more than that and still be in
+//! error: its modes, told from many lines each, are off by far more than their noise. Intervals by the noise
+//! of the lines are then too narrow by as much. The errors that the modes need beside what was found, at the
+//! very parameters that lines have led to, make intervals of their own, and the wider of the two counts.
 
 use crate::candidate::Candidate;
 use crate::estimates::estimates;
@@ -39,7 +40,8 @@ impl ModalJudgement {
         findings.into_iter().map(widened).collect()
     }
 
-    /// Covariance of a hypothesis' coordinates by its modes and their errors; `None` where these need none, or are not all told, or where FRFs have no modes in common.
+    /// Covariance of a hypothesis' coordinates by its modes and their errors; `None` where these need none,
+    /// or are not all told, or where FRFs have no modes in common.
     fn uncertainty_of(
         &self,
         fitter: &Fitter,
@@ -58,7 +60,8 @@ impl ModalJudgement {
     }
 }
 
-/// Whether a sensor loads the structure in some FRFs and not in others: each has poles of its own then, and the common ones of a recording are of no structure.
+/// Whether a sensor loads the structure in some FRFs and not in others: each has poles of its own then, and
+/// the common ones of a recording are of no structure.
 fn has_moved_sensor(hypothesis: &Hypothesis, observation: &Observation) -> bool {
     let pairs = observation.pairs();
     let several = pairs.iter().any(|pair| pair.response != pairs[0].response);
@@ -77,7 +80,8 @@ impl Problem<'_> {
     }
 }
 
-/// The one of two estimates of the same value that is less sure of it; one that is sure of nothing says nothing.
+/// The one of two estimates of the same value that is less sure of it; one that is sure of nothing says
+/// nothing.
 fn less_sure(a: Estimate, b: Estimate) -> Estimate {
     match (a.std, b.std) {
         (Some(own), Some(other)) if other > own => b,

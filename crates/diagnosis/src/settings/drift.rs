@@ -4,8 +4,10 @@
 pub(crate) mod poles {
     /// Farthest that a mode may have moved between references, in ln ω.
     pub(crate) const MOST_MOVED: f64 = 0.05;
-    /// Factor by which the damping ratio of the same mode may differ, at most: a pole that only follows what a fit leaves has any damping. Without it, and
-    /// without the limit on what a free fit may leave (`free_fit_limit` of `ModalSettings`), drift of 2 % was told of a real beam that does not drift by more than parts in 100,000.
+    /// Factor by which the damping ratio of the same mode may differ, at most: a pole that only follows what
+    /// a fit leaves has any damping. Without it, and without the limit on what a free fit may leave
+    /// (`free_fit_limit` of `ModalSettings`), drift of 2 % was told of a real beam that does not drift by
+    /// more than parts in 100,000.
     pub(crate) const MOST_DAMPING_FACTOR: f64 = 2.0;
     /// A natural frequency counts where it is known to this share of its half-width.
     pub(crate) const KNOWN_SHARE: f64 = 0.3;
@@ -13,9 +15,11 @@ pub(crate) mod poles {
 
 /// Whether references differ.
 pub(crate) mod differences {
-    /// Probability by chance below which poles that differ between references are called drift: none of 1400 tests without drift is.
+    /// Probability by chance below which poles that differ between references are called drift: none of 1400
+    /// tests without drift is.
     pub(crate) const CALLED_DRIFT: f64 = 1e-3;
-    /// Differences of natural frequencies, as a share of the half-width, below which nothing is called drift: a free fit's residual terms leave as much wrong.
+    /// Differences of natural frequencies, as a share of the half-width, below which nothing is called drift:
+    /// a free fit's residual terms leave as much wrong.
     pub(crate) const LEAST_DIFFERENCE: f64 = 0.005;
     /// Probability by chance from which two references agree.
     pub(crate) const AGREE: f64 = 0.01;
@@ -23,7 +27,8 @@ pub(crate) mod differences {
 
 /// Which stiffness it was.
 pub(crate) mod attribution {
-    /// Relative deviation of the shares of strain energy of a model that explains the recording down to its noise.
+    /// Relative deviation of the shares of strain energy of a model that explains the recording down to its
+    /// noise.
     pub(crate) const DEVIATION_IF_EXPLAINED: f64 = 0.02;
     /// The same of any other model.
     pub(crate) const DEVIATION_OTHERWISE: f64 = 0.1;

@@ -1,4 +1,5 @@
-//! Numbers of what a search takes from a recording: which FRFs and lines, what their noise is, and what is wrong with them.
+//! Numbers of what a search takes from a recording: which FRFs and lines, what their noise is, and what is
+//! wrong with them.
 
 /// Long recordings, of which some lines are used.
 pub(crate) mod recordings {
@@ -12,8 +13,8 @@ pub(crate) mod recordings {
     pub(crate) const KEPT_LINES: usize = 900;
     /// Share of these that are evenly spread.
     pub(crate) const EVEN_SHARE: f64 = 0.39;
-    /// Lines about a resonance are kept one by one up to this distance and ever more rarely beyond, in proportion to it: the first that
-    /// keeps the limit.
+    /// Lines about a resonance are kept one by one up to this distance and ever more rarely beyond, in
+    /// proportion to it: the first that keeps the limit.
     pub(crate) const ONE_BY_ONE: [usize; 10] = [64, 48, 32, 24, 16, 12, 8, 6, 4, 2];
 }
 
@@ -29,7 +30,8 @@ pub(crate) mod searched {
 
 /// What is not searched, to judge what was found by it.
 pub(crate) mod held_out {
-    /// Where the two bands begin, as shares of the lines: at about a third and two thirds, neither the stiff nor the massy end alone.
+    /// Where the two bands begin, as shares of the lines: at about a third and two thirds, neither the stiff
+    /// nor the massy end alone.
     pub(crate) const BANDS: [f64; 2] = [0.3, 0.62];
     /// Fewest lines, in widths of a band: of fewer nothing can be spared.
     pub(crate) const FEWEST_WIDTHS: usize = 10;
@@ -45,7 +47,8 @@ pub(crate) mod noise {
     pub(crate) const SCATTER_UNCERTAINTY: f64 = 0.2;
     /// Lines on each side over which the local level is taken.
     pub(crate) const LEVEL_WINDOW: usize = 20;
-    /// Share of the local mean square that counts as signal beside a value's own: in an antiresonance a value has next to none.
+    /// Share of the local mean square that counts as signal beside a value's own: in an antiresonance a value
+    /// has next to none.
     pub(crate) const LEVEL_SHARE: f64 = 0.1;
 }
 

@@ -1,4 +1,5 @@
-//! Numbers of the map of places with no law assumed: what a caller may set, and what each of its steps needs besides.
+//! Numbers of the map of places with no law assumed: what a caller may set, and what each of its steps needs
+//! besides.
 
 use jointscope_inference::{Convergence, StepDamping};
 
@@ -26,7 +27,8 @@ pub struct LocationSettings {
     pub end: Convergence,
     /// Damping of the steps.
     pub damping: StepDamping,
-    /// Places that leave more than the first times the best and the second besides, with inflated noise, are fitted no further …
+    /// Places that leave more than the first times the best and the second besides, with inflated noise, are
+    /// fitted no further …
     pub promising: (f64, f64),
     /// … and come after all others: what they leave counts this many times.
     pub hopeless: f64,
@@ -34,13 +36,16 @@ pub struct LocationSettings {
     pub rival: f64,
     /// Bands by which a place's misfit is stated.
     pub bands: usize,
-    /// Best places whose δ and laws are stated, and what they may leave as a multiple of what the best leaves.
+    /// Best places whose δ and laws are stated, and what they may leave as a multiple of what the best
+    /// leaves.
     pub stated: (usize, f64),
     /// Gain in χ² for which a free scalar sets out again from where a law has led.
     pub elsewhere: f64,
-    /// Share of what the refitted fixture leaves that a place, and then its law, may leave for a search to set out from it.
+    /// Share of what the refitted fixture leaves that a place, and then its law, may leave for a search to
+    /// set out from it.
     pub part: f64,
-    /// 1 − γ·bᵀZ⁻¹b, and the compliance of what is in series, must be known to this share of themselves for δ to be stated.
+    /// 1 − γ·bᵀZ⁻¹b, and the compliance of what is in series, must be known to this share of themselves for δ
+    /// to be stated.
     pub known: f64,
     /// Laws over frequency.
     pub law: LawSettings,
@@ -52,7 +57,8 @@ pub struct LocationSettings {
 pub struct LawSettings {
     /// Starts of a guess that are improved, and steps of each.
     pub guesses: (usize, usize),
-    /// Share of their size that counts as noise of the scalars while laws are guessed: δ is never known better, near resonances least.
+    /// Share of their size that counts as noise of the scalars while laws are guessed: δ is never known
+    /// better, near resonances least.
     pub relative_noise: f64,
     /// Laws fitted to the FRFs, and how many times what the closest guess leaves the others may leave.
     pub fitted: (usize, f64),
@@ -108,7 +114,8 @@ pub(crate) mod sites {
     pub(crate) const GRID_OF_BEAM: usize = 20;
     /// Share of a body's extent within which two abscissae are the same place.
     pub(crate) const SAME_PLACE: f64 = 0.02;
-    /// Abscissae of one stretch of a body: each stretch is sought through by itself, for between them a search does not find the way.
+    /// Abscissae of one stretch of a body: each stretch is sought through by itself, for between them a
+    /// search does not find the way.
     pub(crate) const STRETCH: usize = 3;
 }
 

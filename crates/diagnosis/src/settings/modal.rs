@@ -1,8 +1,10 @@
-//! Numbers of fits to the modes of a recording, by the question that each decides. What a caller may set of them stands in `ModalSettings`.
+//! Numbers of fits to the modes of a recording, by the question that each decides. What a caller may set of
+//! them stands in `ModalSettings`.
 
 /// Modes of the recording by themselves.
 pub(crate) mod recorded {
-    /// Orders of a free fit beside those of the modes that a model may have, where nothing but the FRFs tells their noise.
+    /// Orders of a free fit beside those of the modes that a model may have, where nothing but the FRFs tells
+    /// their noise.
     pub(crate) const SPARE_ORDERS: usize = 8;
 }
 
@@ -12,12 +14,15 @@ pub(crate) mod sizes {
 
     /// Share of the usual size below which an error is none: ten times the least that is tried.
     pub(crate) const NEGLIGIBLE: f64 = 10.0 * ErrorSizes::LEAST;
-    /// Multiple of the usual error of gains beyond which a channel's is no error of them: one record of many that is a tenth too large is the very thing that a name says.
+    /// Multiple of the usual error of gains beyond which a channel's is no error of them: one record of many
+    /// that is a tenth too large is the very thing that a name says.
     pub(crate) const BEYOND_ERRORS: f64 = 4.0;
-    /// Share of what the fixture states as deviations of damping ratios that counts as the usual error of them at the least: nobody claimed to know them better than these.
+    /// Share of what the fixture states as deviations of damping ratios that counts as the usual error of
+    /// them at the least: nobody claimed to know them better than these.
     pub(crate) const LEAST_OF_STATED_DAMPING: f64 = 0.5;
-    /// What a fit may lose in ln p by errors that are held at a limit and is as probable all the same. Beside its dashpot a spring to ground on a solid has damping wrong by 1.5 or by 2.2
-    /// times what was stated with ln p 0.03 apart, whichever the fit comes to.
+    /// What a fit may lose in ln p by errors that are held at a limit and is as probable all the same. Beside
+    /// its dashpot a spring to ground on a solid has damping wrong by 1.5 or by 2.2 times what was stated
+    /// with ln p 0.03 apart, whichever the fit comes to.
     pub(crate) const AS_PROBABLE: f64 = 0.1;
 }
 
@@ -49,21 +54,25 @@ pub(crate) mod differences {
 pub(crate) mod descent {
     use jointscope_inference::{Convergence, StepDamping};
 
-    /// Decrease of χ² that a step promises below which a fit stands where it belongs: what one parameter gains by chance.
+    /// Decrease of χ² that a step promises below which a fit stands where it belongs: what one parameter
+    /// gains by chance.
     pub(crate) const STANDS_STILL: f64 = 1.0;
-    /// Sets of derivatives that a descent may take after whose end the sizes of error are taken anew: what is fitted closely at sizes that are about to change is fitted again.
+    /// Sets of derivatives that a descent may take after whose end the sizes of error are taken anew: what is
+    /// fitted closely at sizes that are about to change is fitted again.
     pub(crate) const DERIVATIVES: usize = 2;
     /// Gauss–Newton steps, at most.
     pub(crate) const MOST_STEPS: usize = 40;
     /// Damping of the steps, to begin with and as they succeed or fail.
     pub(crate) const DAMPING: StepDamping =
         StepDamping { initial: 1e-6, decrease: 0.1, least: 1e-9, raised: 1e-3, most: 1e5 };
-    /// Decrease of the objective below which a descent ends, a fifth of that at which the fit stands still, and the same as a share of the objective.
+    /// Decrease of the objective below which a descent ends, a fifth of that at which the fit stands still,
+    /// and the same as a share of the objective.
     pub(crate) const CONVERGENCE: Convergence =
         Convergence { gain: 0.2 * STANDS_STILL, share: 1e-3, floor: 0.0 };
     /// Share of what an undamped step promises below which a fit follows a curved valley.
     pub(crate) const CURVED_VALLEY: f64 = 0.1;
-    /// A step that gains less than this share of what the first one with its derivatives gained asks for new ones.
+    /// A step that gains less than this share of what the first one with its derivatives gained asks for new
+    /// ones.
     pub(crate) const REUSE: f64 = 0.2;
 }
 
@@ -79,17 +88,18 @@ pub(crate) mod fit {
     pub(crate) const PATIENT_ROUNDS: usize = 2;
     /// … if it gains less in one than this share of what it lacks.
     pub(crate) const PROMISING_SHARE: f64 = 0.25;
-    /// Factor by which a size may shrink from one round to the next: where errors are next to none, a fit that starts far away hangs on whatever is recorded most sharply.
+    /// Factor by which a size may shrink from one round to the next: where errors are next to none, a fit
+    /// that starts far away hangs on whatever is recorded most sharply.
     pub(crate) const MOST_SHRINKAGE: f64 = 0.1;
-    /// How often a mode that has strayed into the band or out of it is counted anew, and damping that turns phases by far more or less than before: a mode at the very end of the
-    /// band may stray for ever.
+    /// How often a mode that has strayed into the band or out of it is counted anew, and damping that turns
+    /// phases by far more or less than before: a mode at the very end of the band may stray for ever.
     pub(crate) const MOST_STRAYS: usize = 2;
     /// Standard deviations by which χ² of the features may be larger than their number.
     pub(crate) const BY_CHANCE: f64 = 6.0;
 }
 
-/// How far sizes of the error go of the way to those that a fit asks for. Where parameters and sizes ask for each other in turn they would go round for ever
-/// (`docs/records/2026-11-25-fits-among-modes.md`).
+/// How far sizes of the error go of the way to those that a fit asks for. Where parameters and sizes ask for
+/// each other in turn they would go round for ever (`docs/records/2026-11-25-fits-among-modes.md`).
 pub(crate) mod turns {
     /// Factor of the share that a size goes, where it turns back.
     pub(crate) const TURNED_BACK: f64 = 0.4;
@@ -109,7 +119,8 @@ pub(crate) mod along {
     pub(crate) const MOST_FIRST_STEP: f64 = 0.5;
     /// Steps on either side, at most.
     pub(crate) const MOST_STEPS: usize = 14;
-    /// ln of the density below the highest at which a place is not credible any more: three standard deviations.
+    /// ln of the density below the highest at which a place is not credible any more: three standard
+    /// deviations.
     pub(crate) const INCREDIBLE: f64 = 4.5;
     /// Fall of ln of the density over a step below which the next is longer.
     pub(crate) const EVEN: f64 = 0.5;
@@ -123,16 +134,20 @@ pub(crate) mod along {
 
 /// What modes and lines say together.
 pub(crate) mod judgement {
-    /// Standard deviations of χ² for so many unknowns that an effect must leave less than errors of the model do.
+    /// Standard deviations of χ² for so many unknowns that an effect must leave less than errors of the model
+    /// do.
     pub(crate) const CERTAIN: f64 = 3.0;
-    /// Probability of names that explain the modes, and not the lines: what a usual finding has beside the largest weight of something that is not listed.
+    /// Probability of names that explain the modes, and not the lines: what a usual finding has beside the
+    /// largest weight of something that is not listed.
     pub(crate) const AT_ODDS: f64 = 2.0 / 3.0;
-    /// Damping ratio of a recorded pole above which it stands for no mode, half its frequency wide: a ripple over the band had 0.8.
+    /// Damping ratio of a recorded pole above which it stands for no mode, half its frequency wide: a ripple
+    /// over the band had 0.8.
     pub(crate) const NO_PEAK: f64 = 0.25;
 }
 
 /// Modes of two recordings of a structure.
 pub(crate) mod changes {
-    /// Difference in ln ω within which modes that no model tells apart are taken for one: what a small change moves a frequency by.
+    /// Difference in ln ω within which modes that no model tells apart are taken for one: what a small change
+    /// moves a frequency by.
     pub(crate) const SAME: f64 = 0.02;
 }

@@ -10,9 +10,11 @@ pub(crate) mod baseline {
 pub(crate) mod findings {
     /// Share of a finding's probability from which another place of it is to be reckoned with.
     pub(crate) const LIKELY_SHARE: f64 = 0.05;
-    /// Share of tests in which chance does as well, from which on the name that came nearest to a finding is not told.
+    /// Share of tests in which chance does as well, from which on the name that came nearest to a finding is
+    /// not told.
     pub(crate) const LEAST_BY_CHANCE: f64 = 0.5;
-    /// How close to the other point an offset must lead, as a share of the distance between the two, for two points to have been taken for each other.
+    /// How close to the other point an offset must lead, as a share of the distance between the two, for two
+    /// points to have been taken for each other.
     pub(crate) const EXCHANGED_WITHIN: f64 = 0.1;
 }
 
@@ -22,7 +24,8 @@ pub(crate) mod odd_record {
     pub(crate) const LEFT: f64 = 0.5;
     /// Fewest records among which one stands alone.
     pub(crate) const FEWEST: usize = 3;
-    /// ln of the multiple by which it stands apart from the next, at the least: a tenth is what strikes repeat to.
+    /// ln of the multiple by which it stands apart from the next, at the least: a tenth is what strikes
+    /// repeat to.
     pub(crate) const APART: f64 = 0.1;
     /// How many times as far as the others from each other.
     pub(crate) const OTHERS: f64 = 3.0;
@@ -42,12 +45,14 @@ pub(crate) mod variation {
     pub(crate) const KNOWN: f64 = 2.0;
     /// Fewest such lines that tell.
     pub(crate) const FEWEST_LINES: usize = 8;
-    /// Variance of ln |δ| that every line has besides: none is known to better than a hundredth, or few lines would decide alone.
+    /// Variance of ln |δ| that every line has besides: none is known to better than a hundredth, or few lines
+    /// would decide alone.
     pub(crate) const LEAST_VARIANCE: f64 = 1e-4;
     /// Departures of the logarithm from a straight line beyond which δ follows no power of frequency.
     pub(crate) const NO_POWER: f64 = 0.7;
     /// Length of the mean direction of δ below which its phase changes over the band.
     pub(crate) const ONE_PHASE: f64 = 0.7;
-    /// How many times the other part of that direction its real or imaginary part must be for δ to be called real or imaginary.
+    /// How many times the other part of that direction its real or imaginary part must be for δ to be called
+    /// real or imaginary.
     pub(crate) const ONE_PART: f64 = 2.0;
 }

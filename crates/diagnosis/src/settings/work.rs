@@ -1,4 +1,5 @@
-//! Numbers of how much a search does: what things cost, in predicted values of an FRF, and what share of the rest one step may take.
+//! Numbers of how much a search does: what things cost, in predicted values of an FRF, and what share of the
+//! rest one step may take.
 
 /// What is counted besides the values that are predicted.
 pub(crate) mod costs {
@@ -16,7 +17,8 @@ pub(crate) mod costs {
 pub(crate) mod shares {
     /// Fits between which the work done is looked at.
     pub(crate) const FITS_TOGETHER: usize = 16;
-    /// Share of the work left that one step by lines may take: one more effect is worth less than to know what else would explain the first.
+    /// Share of the work left that one step by lines may take: one more effect is worth less than to know
+    /// what else would explain the first.
     pub(crate) const OF_STEP_BY_LINES: f64 = 0.5;
     /// The same of a search by lines where modes have told what there is and leave doubts.
     pub(crate) const OF_DOUBTS: f64 = 0.1;

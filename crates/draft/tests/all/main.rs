@@ -168,7 +168,8 @@ fn storeys_beyond_the_points_of_a_recording_take_names_that_no_point_has() {
     assert!(["1", "2", "3", "4"].iter().all(|name| names.contains(name)), "{names:?}");
 }
 
-/// Two blocks of 60 mm with a strip of 65 mm between them, and points at these places of a recording's geometry, mm.
+/// Two blocks of 60 mm with a strip of 65 mm between them, and points at these places of a recording's
+/// geometry, mm.
 fn placed(places: &[(&str, f64)], origin: Option<f64>) -> Result<Fixture, DraftError> {
     let structure = Structure::Blocks {
         blocks: [bar("60x50x50:steel"), bar("60x50x50:steel")],

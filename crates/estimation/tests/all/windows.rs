@@ -12,7 +12,8 @@ fn estimate(hits: &[Hit], options: &EstimateOptions) -> Estimate {
     Estimate::of(hits, options).unwrap()
 }
 
-/// Largest deviation from the FRF at s = decay + iω, relative to its largest value, over the lines that the hammer excites.
+/// Largest deviation from the FRF at s = decay + iω, relative to its largest value, over the lines that the
+/// hammer excites.
 fn deviation(found: &Estimate, decay: f64) -> f64 {
     let frfs: FrfSet = found.usable().unwrap();
     let lines = || frfs.values(0).iter().zip(frfs.lines().hz());

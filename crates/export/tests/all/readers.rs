@@ -1,4 +1,5 @@
-//! Readers of what is written, as the programs' manuals describe their cards: 4×4 matrices on (y, θ) of nodes 2 and 3.
+//! Readers of what is written, as the programs' manuals describe their cards: 4×4 matrices on (y, θ) of nodes
+//! 2 and 3.
 
 use crate::common::Matrix4;
 use std::collections::BTreeMap;
@@ -186,7 +187,8 @@ pub(crate) fn abaqus_matrix(text: &str) -> BTreeMap<String, Matrix4> {
     found
 }
 
-/// K and C of springs and dashpots on motions that equations make; rotations are nodes of their own, named in the notes.
+/// K and C of springs and dashpots on motions that equations make; rotations are nodes of their own, named in
+/// the notes.
 pub(crate) fn calculix(text: &str) -> (Matrix4, Matrix4) {
     let comment: String = text.lines().filter_map(|l| l.strip_prefix("**")).collect::<Vec<_>>().join(" ");
     let words: Vec<&str> = comment.split_whitespace().collect();

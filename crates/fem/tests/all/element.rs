@@ -8,7 +8,8 @@ use std::f64::consts::TAU;
 const STEEL: Elasticity =
     Elasticity { youngs_modulus: 2.07e11, poisson_ratio: 0.3, density: 7850.0, shear_factor: 1.0 };
 
-/// Forces at the free equations inside a block whose nodes all follow `field`, relative to the largest at its faces.
+/// Forces at the free equations inside a block whose nodes all follow `field`, relative to the largest at its
+/// faces.
 fn unbalanced(mesh: &Mesh, size: [f64; 3], field: impl Fn([f64; 3]) -> [f64; 3]) -> f64 {
     let matrices = Matrices::of(mesh, |_, _| false).unwrap();
     let mut vector = vec![0.0; matrices.order()];
@@ -190,6 +191,7 @@ fn six_motions_of_a_free_block_cost_nothing_and_their_modes_are_at_zero() {
         let ratio = (matrices.rayleigh_quotient(&mesh, motion) / first).sqrt();
         assert!(ratio < 1e-6, "a rigid motion at {ratio:e} of the first elastic frequency");
     }
-    // Their residual relative to λM φ means nothing at λ = 0, so they are refused rather than handed out as they are.
+    // Their residual relative to λM φ means nothing at λ = 0, so they are refused rather than handed out as
+    // they are.
     assert!(modes.is_err() || modes.unwrap().eigenvalues[..6].iter().all(|value| value.abs() < 1e-6 * first));
 }

@@ -202,7 +202,8 @@ fn a_couple_on_either_block_turns_them_against_each_other_by_what_the_strip_bend
     let (length, bending) = (0.0651, 2.07e11 * 2.864708e-10);
     let expected = length / bending;
     assert!((turned / expected - 1.0).abs() < 5e-3, "{turned:e} rad for {expected:e} rad");
-    // The strip leaves A straight: B's line, continued to its near end, is half that angle away over the strip's length.
+    // The strip leaves A straight: B's line, continued to its near end, is half that angle away over the
+    // strip's length.
     let at = |x: f64, [(x0, y0), (x1, y1)]: [(f64, f64); 2]| y0 + (y1 - y0) * (x - x0) / (x1 - x0);
     let apart =
         at(length, [(0.1, read[2]), (0.15, read[3])]) - at(length, [(-0.09, read[0]), (-0.05, read[1])]);

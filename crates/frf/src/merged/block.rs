@@ -90,7 +90,8 @@ impl Basis {
         }
     }
 
-    /// Coefficients of an FRF and the variance of what they leave of a line; `None` where that is more than noise.
+    /// Coefficients of an FRF and the variance of what they leave of a line; `None` where that is more than
+    /// noise.
     fn coefficients(&mut self, values: &[Complex64]) -> Option<([Complex64; NODES], f64)> {
         let count = values.len();
         let polynomial = |j: usize| &self.values[j * count..(j + 1) * count];

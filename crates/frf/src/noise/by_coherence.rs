@@ -12,8 +12,9 @@ const STEPS: usize = 6;
 
 /// Variances E|ε|² of one FRF from its coherence and number of averages, smoothed over the lines.
 ///
-/// A file says nothing of the force, whose power falls by decades within few lines before a soft tip's first zero, and the variances rise by as much. So what the lines
-/// show against a noise that varies slowly is followed over no more of them than tell a level: with n averages each has 2(n − 1) degrees of freedom.
+/// A file says nothing of the force, whose power falls by decades within few lines before a soft tip's first
+/// zero, and the variances rise by as much. So what the lines show against a noise that varies slowly is
+/// followed over no more of them than tell a level: with n averages each has 2(n − 1) degrees of freedom.
 pub(crate) fn from_coherence(values: &[Complex64], coherence: &[f64], averages: u32) -> Vec<f64> {
     let raw = of_lines(values, coherence, averages);
     let slow = smoothed(values, &raw, coherence, &[], 1.0);
@@ -32,8 +33,8 @@ pub(crate) fn from_coherence(values: &[Complex64], coherence: &[f64], averages: 
     lines.map(|(line, (value, slow))| (slow * level(line)).max(floor(value))).collect()
 }
 
-/// The level at zero of variances at distances from there, their logarithm along a straight line: the most likely one for spreads in proportion to the level. `None` of too
-/// few, or where they are all nothing.
+/// The level at zero of variances at distances from there, their logarithm along a straight line: the most
+/// likely one for spreads in proportion to the level. `None` of too few, or where they are all nothing.
 fn local_level(near: &[(f64, f64)]) -> Option<f64> {
     let count = near.len() as f64;
     let mean = near.iter().map(|(_, ratio)| ratio).sum::<f64>() / count;
@@ -59,8 +60,8 @@ fn local_level(near: &[(f64, f64)]) -> Option<f64> {
     Some(level.exp())
 }
 
-/// Variance E|ε|² of one value by line as coherence and averages state it, (1 − γ²)/((n − 1)γ²)·|H|²: right in the mean over many lines,
-/// with too few degrees of freedom to weigh a single one by.
+/// Variance E|ε|² of one value by line as coherence and averages state it, (1 − γ²)/((n − 1)γ²)·|H|²: right
+/// in the mean over many lines, with too few degrees of freedom to weigh a single one by.
 pub fn of_lines(values: &[Complex64], coherence: &[f64], averages: u32) -> Vec<f64> {
     let degrees = f64::from(averages.max(2) - 1);
     let of_line = |(value, gamma2): (&Complex64, &f64)| {

@@ -9,11 +9,12 @@ use num_complex::Complex64;
 pub(crate) const NEIGHBOURS: usize = 5;
 /// A line whose own noise is followed to more than this share tells nothing about it.
 pub(crate) const FOLLOWED: f64 = 0.8;
-/// Squared errors beyond this many times their expected size are peaks that the local function missed, not noise.
+/// Squared errors beyond this many times their expected size are peaks that the local function missed, not
+/// noise.
 const CLIPPED: f64 = 8.0;
 
-/// Variances E|ε|² of one FRF from what is left of its values at `hz` by a rational function through their neighbours: one mode and a
-/// smooth rest. Medians over a window keep out what is neither, two modes at once.
+/// Variances E|ε|² of one FRF from what is left of its values at `hz` by a rational function through their
+/// neighbours: one mode and a smooth rest. Medians over a window keep out what is neither, two modes at once.
 pub fn from_scatter(hz: &[f64], values: &[Complex64]) -> Vec<f64> {
     let n = values.len();
     let size: Vec<f64> = values.iter().map(|v| v.norm_sqr()).collect();

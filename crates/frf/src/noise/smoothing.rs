@@ -13,12 +13,14 @@ pub(super) const NOTHING: f64 = 1e-30;
 /// Smallest relative noise that is believed: quantisation and calibration are never better.
 pub(crate) const FLOOR: f64 = 1e-5;
 
-/// Smooths variances of single lines over the lines: the noise of the channels varies slowly, and what it makes of an FRF rises wherever
-/// the power of the `force`, in any unit, dips. An empty `force` is one that is the same on all lines; lines without coherence are skipped.
+/// Smooths variances of single lines over the lines: the noise of the channels varies slowly, and what it
+/// makes of an FRF rises wherever the power of the `force`, in any unit, dips. An empty `force` is one that
+/// is the same on all lines; lines without coherence are skipped.
 ///
-/// `alike` is the number of neighbouring lines that tell as much about the noise as one line whose noise is its own: 1 without a window, more under
-/// one or with zero padding. The mean is over that many times more lines: a variance from few independent values is too small as often as too large,
-/// and what it divides is too large in the mean.
+/// `alike` is the number of neighbouring lines that tell as much about the noise as one line whose noise is
+/// its own: 1 without a window, more under one or with zero padding. The mean is over that many times more
+/// lines: a variance from few independent values is too small as often as too large, and what it divides is
+/// too large in the mean.
 pub fn smoothed(
     values: &[Complex64],
     of_lines: &[f64],
@@ -54,8 +56,8 @@ pub(super) fn around(line: usize, reach: usize, n: usize) -> std::ops::Range<usi
     line.saturating_sub(reach)..(line + reach + 1).min(n)
 }
 
-/// Fits raw variances as S + N·|H|² within a sliding window: both non-negative, weighted by the fit itself, as the
-/// spread of a variance is proportional to it, and clipped at so many times the fit.
+/// Fits raw variances as S + N·|H|² within a sliding window: both non-negative, weighted by the fit itself,
+/// as the spread of a variance is proportional to it, and clipped at so many times the fit.
 pub(super) fn smooth(
     size: &[f64],
     raw: &[f64],

@@ -1,4 +1,5 @@
-//! Variances of FRFs against noise that is known, since it was added here: errors divided by their deviations must have a variance of one.
+//! Variances of FRFs against noise that is known, since it was added here: errors divided by their deviations
+//! must have a variance of one.
 
 use super::*;
 use jointscope_samples::Noise;
@@ -94,7 +95,8 @@ fn a_noiseless_frf_keeps_a_positive_variance() {
     assert!(from_scatter(&hz(3), &values[..3]).iter().all(|v| *v > 0.0));
 }
 
-/// A soft tip's blow, a half sine whose spectrum has its first zero within the band, as share of its force at 0 Hz.
+/// A soft tip's blow, a half sine whose spectrum has its first zero within the band, as share of its force at
+/// 0 Hz.
 fn soft(line: usize) -> f64 {
     let a = 1.5 * line as f64 / 250.0;
     ((std::f64::consts::PI * a).cos() / (1.0 - 4.0 * a * a)).abs().max(0.03)

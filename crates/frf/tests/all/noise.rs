@@ -1,4 +1,5 @@
-//! Variances: where they come from, that no form of the FRFs changes them, and what is done about dips of the force.
+//! Variances: where they come from, that no form of the FRFs changes them, and what is done about dips of the
+//! force.
 
 use crate::common::{accelerances, mode};
 use jointscope_frf::noise::{NoiseSource, from_scatter, of_lines, smoothed, with_variances};
@@ -10,7 +11,8 @@ fn lines() -> SpectralLines {
     SpectralLines::even(5.0, 2.5, 300).unwrap()
 }
 
-/// One noisy FRF whose noise is `variance`, with the coherence that `averages` hits of it have, over and over.
+/// One noisy FRF whose noise is `variance`, with the coherence that `averages` hits of it have, over and
+/// over.
 fn noisy(variance: f64, averages: u32) -> FrfSet {
     let mut random = Noise::from_state(5);
     let mut coherence = Vec::new();
@@ -70,7 +72,8 @@ fn a_recording_says_where_its_variances_come_from() {
     assert!((alone / 1e-4 - 1.0).abs() < 0.3, "{alone}");
     set.set_averages(0, Some(2));
     assert_eq!(mean(&set).1, NoiseSource::Coherence);
-    // A coherence that says nothing of the scatter is left aside: the noise is 100,000 times what it would be of two averages.
+    // A coherence that says nothing of the scatter is left aside: the noise is 100,000 times what it would be
+    // of two averages.
     set.set_averages(0, None);
     for coherence in [vec![1.0; 300], vec![0.0; 300], vec![1.0 - 1e-9; 300]] {
         set.set_coherence(0, coherence).unwrap();
@@ -94,7 +97,8 @@ fn a_line_states_its_noise_by_coherence_and_averages() {
 
 #[test]
 fn where_the_force_dips_the_same_noise_of_the_sensor_counts_for_more() {
-    // The sensor's noise is 1e-4 of the strongest line's force; on every third line the hammer gives a hundredth of that power.
+    // The sensor's noise is 1e-4 of the strongest line's force; on every third line the hammer gives a
+    // hundredth of that power.
     let power = |line: usize| if line.is_multiple_of(3) { 0.02 } else { 2.0 };
     let mut random = Noise::from_state(6);
     let (mut values, mut raw) = (Vec::new(), Vec::new());

@@ -1,4 +1,5 @@
-//! The signals of a hammer hit: one force and the responses to it over time, in SI units and the fixture's terms.
+//! The signals of a hammer hit: one force and the responses to it over time, in SI units and the fixture's
+//! terms.
 
 use jointscope_hits::{Hit, HitError, MeasuredMotion, Response};
 use jointscope_spectra::Channel;

@@ -110,7 +110,8 @@ fn is_unit_word(word: &str, part: Option<Part>) -> bool {
     }
 }
 
-/// Name and unit: `4/1 real [m/s^2/N]`, or `frequency (Hz)` with a blank before the bracket, so that `H(4/1)` stays whole.
+/// Name and unit: `4/1 real [m/s^2/N]`, or `frequency (Hz)` with a blank before the bracket, so that `H(4/1)`
+/// stays whole.
 fn split_unit(header: &str) -> (String, String) {
     let header = header.trim();
     let brackets = header.find('[').and_then(|open| Some((open, open + header[open..].find(']')?)));
@@ -135,8 +136,8 @@ pub(super) fn is_header(fields: &[String]) -> bool {
     fields.iter().enumerate().all(|(at, field)| column(at, field).is_some())
 }
 
-/// Whether a line below a header is one of units: the header says what its columns are, and that line does not, and holds no number: a row
-/// with one field that is none is no line of units.
+/// Whether a line below a header is one of units: the header says what its columns are, and that line does
+/// not, and holds no number: a row with one field that is none is no line of units.
 pub(super) fn is_line_of_units(
     header: &[String],
     below: &[String],

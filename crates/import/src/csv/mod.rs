@@ -1,9 +1,10 @@
 //! Tables in text: frequency beside real and imaginary part, or magnitude and phase, of one FRF or of many.
 //!
-//! * Fields are parted by `;`, tabs, commas or blanks; a decimal comma is known where something else parts the fields. Lines that start with
-//!   `#` or `%` and lines before the header are passed.
-//! * The header names the columns: `frequency`, `frequency_hz`, `f [Hz]`, `omega [rad/s]`; `4/1 real`, `4/1 imag`, `4/1 magnitude`, `4/1 phase [deg]`,
-//!   `4/1 coherence`, `H(4:+z/1:+z) re`. A column's unit stands in brackets behind its name, or in a line of units below the header.
+//! * Fields are parted by `;`, tabs, commas or blanks; a decimal comma is known where something else parts
+//!   the fields. Lines that start with `#` or `%` and lines before the header are passed.
+//! * The header names the columns: `frequency`, `frequency_hz`, `f [Hz]`, `omega [rad/s]`; `4/1 real`,
+//!   `4/1 imag`, `4/1 magnitude`, `4/1 phase [deg]`, `4/1 coherence`, `H(4:+z/1:+z) re`. A column's unit
+//!   stands in brackets behind its name, or in a line of units below the header.
 //! * A file of one FRF may leave the pair away (`frequency,real,imag`); a [`ColumnMap`] says which FRF it is.
 
 mod columns;

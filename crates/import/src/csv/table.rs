@@ -23,7 +23,8 @@ fn no_numbers(rows: &[Row]) -> ImportError {
     ImportError::NoTable { why: format!("no line holds a frequency and numbers beside it{found}") }
 }
 
-/// No row above the first one of numbers has as many fields: a header of another width says that this row lacks some, or has too many.
+/// No row above the first one of numbers has as many fields: a header of another width says that this row
+/// lacks some, or has too many.
 fn no_header(above: &[Row], numbers: &Row) -> ImportError {
     let (line, found) = (numbers.line, numbers.fields.len());
     match above.iter().rev().find(|row| row.fields.len() > 1 && is_header(&row.fields)) {
@@ -35,14 +36,16 @@ fn no_header(above: &[Row], numbers: &Row) -> ImportError {
 }
 
 impl Table {
-    /// The header is the last line above the first row of numbers that has as many fields; a line of units may stand between.
+    /// The header is the last line above the first row of numbers that has as many fields; a line of units
+    /// may stand between.
     pub(super) fn of(rows: &Rows) -> Result<Self, ImportError> {
         let all = &rows.rows;
         let is_numbers =
             |row: &Row| row.fields.len() > 1 && row.fields.iter().all(|field| rows.number(field).is_some());
         let first = all.iter().position(is_numbers).ok_or_else(|| no_numbers(all))?;
         let width = all[first].fields.len();
-        // A row with a field that is no number, above the first that has none, is a row of the table all the same.
+        // A row with a field that is no number, above the first that has none, is a row of the table all the
+        // same.
         let holds_number = |row: &Row| row.fields.iter().any(|field| rows.number(field).is_some());
         let mut first = first;
         while let Some(before) = first.checked_sub(1).map(|before| &all[before])
@@ -110,8 +113,8 @@ impl Table {
         Ok(())
     }
 
-    /// Refuses a column in which one number has a decimal comma and another a point: one of the two parts thousands, or columns of two
-    /// programs were put together.
+    /// Refuses a column in which one number has a decimal comma and another a point: one of the two parts
+    /// thousands, or columns of two programs were put together.
     fn of_one_decimal_sign(&self, rows: &[Row]) -> Result<(), ImportError> {
         for at in 0..self.headers.len() {
             let first = |sign: char| rows.iter().find(|row| row.fields[at].contains(sign));

@@ -10,7 +10,8 @@ use crate::{ChannelPair, ImportError, PairError};
 /// Structures in structures that are looked into.
 const DEEPEST: usize = 4;
 
-/// Reads the FRFs among variables; `prefix` is the path of the structure that holds them, with a point at its end.
+/// Reads the FRFs among variables; `prefix` is the path of the structure that holds them, with a point at its
+/// end.
 pub(super) fn read(prefix: &str, variables: &[&(String, Value)], sink: &mut Sink) -> Result<(), ImportError> {
     level(prefix, variables, sink, 0)
 }
@@ -108,7 +109,8 @@ fn array(
     }
 }
 
-/// Channels and unit of a function: as the map states them, or else by the array's own name where it is the array's only one, or the file's.
+/// Channels and unit of a function: as the map states them, or else by the array's own name where it is the
+/// array's only one, or the file's.
 fn channels(
     key: &str,
     array: &str,

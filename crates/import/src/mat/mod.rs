@@ -10,8 +10,10 @@
 //! | `y_values.quantity.label`, `.unit_transformation.factor` | values times the factor are in the unit of the label: they are stored in SI and shown, say, in g/N |
 //! | `function_record.name` | a name a column, such as `FRF 4:+Z/1:+Z`: the FRF, where it names nodes |
 //!
-//! **Plain arrays**: complex values as long as a vector named `f`, `freq`, `frequency` or `frequencies` (in Hz; `omega` in rad/s) beside them, at the top or within a structure. `H_4_1`, `frf_4_1`
-//! is the FRF 4/1; any other name is given its FRF by a [`ColumnMap`]: `H=4/1 [m/s^2/N]`, or `H(2)=3/1` and `H(2,1)=3/1` for the columns and slices of a matrix.
+//! **Plain arrays**: complex values as long as a vector named `f`, `freq`, `frequency` or `frequencies` (in
+//! Hz; `omega` in rad/s) beside them, at the top or within a structure. `H_4_1`, `frf_4_1` is the FRF 4/1;
+//! any other name is given its FRF by a [`ColumnMap`]: `H=4/1 [m/s^2/N]`, or `H(2)=3/1` and `H(2,1)=3/1` for
+//! the columns and slices of a matrix.
 
 mod arrays;
 mod sink;

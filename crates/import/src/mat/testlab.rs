@@ -97,7 +97,8 @@ fn factor(block: &Value, unit: &str) -> Result<f64, String> {
     }
 }
 
-/// Channels of a function: as the map states them by its names, or the file's where it is the only one, or as its own name has them.
+/// Channels of a function: as the map states them by its names, or the file's where it is the only one, or as
+/// its own name has them.
 fn channels(key: &str, name: &str, of_file: bool, sink: &mut Sink) -> Option<ChannelPair> {
     let entry = sink.map.of_name(key).or_else(|| sink.map.of_name(name));
     match entry.or_else(|| sink.map.of_file(sink.file_name).filter(|_| of_file)) {
@@ -144,7 +145,8 @@ fn transposed(values: &[f64], rows: usize) -> Vec<f64> {
     (0..rows).flat_map(|row| (0..columns).map(move |column| values[column * rows + row])).collect()
 }
 
-/// SI units in one of a label such as `g/N`, `(m/s^2)/N` or `mm/s²/kN`; `None` where a name in it is not known here.
+/// SI units in one of a label such as `g/N`, `(m/s^2)/N` or `mm/s²/kN`; `None` where a name in it is not
+/// known here.
 fn si_of(label: &str) -> Option<f64> {
     let text: String =
         label.replace('²', "^2").chars().filter(|c| !c.is_whitespace() && !"()[]".contains(*c)).collect();

@@ -1,7 +1,9 @@
-//! MATLAB's MAT-file, level 5: versions 5, 6 and 7 (`-v7` is compressed), after MathWorks' *MAT-File Format*, chapter 1.
+//! MATLAB's MAT-file, level 5: versions 5, 6 and 7 (`-v7` is compressed), after MathWorks' *MAT-File Format*,
+//! chapter 1.
 //!
-//! A header of 128 bytes, then data elements: a tag of type and length, and the bytes, padded to eight. An array is an element that holds
-//! elements: flags, dimensions, name, values. Every length is checked against the bytes there are.
+//! A header of 128 bytes, then data elements: a tag of type and length, and the bytes, padded to eight. An
+//! array is an element that holds elements: flags, dimensions, name, values. Every length is checked against
+//! the bytes there are.
 
 use std::io::Read;
 
@@ -101,7 +103,8 @@ impl<'a> Elements<'a> {
         let offset = self.offset();
         let cut = || damaged(offset, "the file ends within a data element");
         let tag = self.word(self.position).ok_or_else(cut)?;
-        // A small element has its length in the upper half of the tag's first word and its bytes in the second.
+        // A small element has its length in the upper half of the tag's first word and its bytes in the
+        // second.
         let (kind, length, start, whole) = match tag >> 16 {
             0 => {
                 let length = self.word(self.position + 4).ok_or_else(cut)? as usize;

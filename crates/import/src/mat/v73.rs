@@ -1,5 +1,5 @@
-//! MATLAB's v7.3 files, which are HDF5: groups are structures, datasets are arrays with their dimensions reversed, cells refer to
-//! objects in `#refs#`; the attribute `MATLAB_class` says what an object is.
+//! MATLAB's v7.3 files, which are HDF5: groups are structures, datasets are arrays with their dimensions
+//! reversed, cells refer to objects in `#refs#`; the attribute `MATLAB_class` says what an object is.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,5 @@
-//! MATLAB files as scipy (v5, v7) and h5py (v7.3) write them, see `docs/development/checks/mat_with_scipy.py`: two FRFs on five lines.
+//! MATLAB files as scipy (v5, v7) and h5py (v7.3) write them, see
+//! `docs/development/checks/mat_with_scipy.py`: two FRFs on five lines.
 
 use jointscope_import::{ColumnMap, Format, Imported, read};
 use jointscope_uff::{Data, Dataset58, FunctionType};

@@ -69,7 +69,8 @@ enum Shape {
     Exponent(f64),
 }
 
-/// The law that the joint's numbers are of, the frequency at which they are stated, and its losses in its own terms.
+/// The law that the joint's numbers are of, the frequency at which they are stated, and its losses in its own
+/// terms.
 fn follows(fit: &JointFit) -> FollowedLaw {
     let follows = &fit.follows;
     let shape = |law: LawKind| {

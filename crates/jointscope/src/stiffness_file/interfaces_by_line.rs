@@ -6,7 +6,8 @@ use serde::Serialize;
 
 use super::masked::MaskedLine;
 
-/// The interfaces by line: what the beam leaves of the joint's compliance, and the springs and dashpots behind it.
+/// The interfaces by line: what the beam leaves of the joint's compliance, and the springs and dashpots
+/// behind it.
 #[derive(Serialize)]
 pub(super) struct InterfacesByLine {
     lines: Vec<LineOfInterfaces>,

@@ -1,5 +1,5 @@
-//! The lumped model against the simulated laboratory, which shares no code with it, and both against recordings that
-//! neither made, where they are at hand.
+//! The lumped model against the simulated laboratory, which shares no code with it, and both against
+//! recordings that neither made, where they are at hand.
 
 use jointscope::fixture::EffectKind;
 use jointscope::{Fixture, FrfSet, Instrument, SpectralLines, synthesize};

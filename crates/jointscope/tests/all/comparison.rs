@@ -1,4 +1,5 @@
-//! Two joints on the same blocks, compared as the program does it: recordings of the simulated laboratory, decomposed, written, read and set side by side.
+//! Two joints on the same blocks, compared as the program does it: recordings of the simulated laboratory,
+//! decomposed, written, read and set side by side.
 
 use crate::joint_fit::{Case, EIGHT, fixture, from_uniform, recorded, rms, six};
 use jointscope::comparison::{Comparison, ComparisonOptions, Decomposed};

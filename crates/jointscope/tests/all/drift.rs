@@ -1,4 +1,5 @@
-//! Hammer tests during which the structure changed, and tests that only look so, from the simulated laboratory.
+//! Hammer tests during which the structure changed, and tests that only look so, from the simulated
+//! laboratory.
 
 use crate::common::{RATIOS, believed, four_pairs, hammer, lines};
 use crate::model_error::told;
@@ -145,7 +146,8 @@ fn an_accelerometer_that_roves_is_no_drift_though_responses_differ() {
     let sensor =
         |point: &str| Effect::new(EffectKind::SensorMass, Place::Response(point.into()), None, &[8e-3]);
     let fixture = believed(RATIOS);
-    // In the second test a response is missing at one reference: then the mean over responses does differ between references.
+    // In the second test a response is missing at one reference: then the mean over responses does differ
+    // between references.
     for (seed, count) in [(51, 4), (52, 3)] {
         let pairs = &four_pairs()[..count];
         let frfs = struck(&fixture, &[sensor("3"), sensor("4")], &[], (pairs, &lines()), &hammer(seed));

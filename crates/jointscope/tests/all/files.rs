@@ -56,7 +56,8 @@ fn is_of_name(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-/// The files of a crate, with what each of them imports or names: an absolute path, and whether it is exported again.
+/// The files of a crate, with what each of them imports or names: an absolute path, and whether it is
+/// exported again.
 struct Files {
     uses: BTreeMap<Names, Vec<(Names, bool)>>,
     /// By module and name, the path that an import stands for.

@@ -1,4 +1,5 @@
-//! The joint from FRFs that were estimated as H1 of hits whose force is noisy too: noise of the force makes H1 too small, and is the same in all FRFs that were struck at once.
+//! The joint from FRFs that were estimated as H1 of hits whose force is noisy too: noise of the force makes
+//! H1 too small, and is the same in all FRFs that were struck at once.
 
 use crate::joint_fit::{Case, EIGHT, NAMES, fit, fixture, recorded, rms, six};
 use jointscope::frf::noise;
@@ -9,11 +10,13 @@ use num_complex::Complex64;
 
 /// Hits averaged.
 const AVERAGES: u32 = 8;
-/// Noise of the response as a share of each FRF's rms accelerance, of the force as a share of the force, of one hit.
+/// Noise of the response as a share of each FRF's rms accelerance, of the force as a share of the force, of
+/// one hit.
 const OF_RESPONSE: f64 = 0.02;
 const OF_FORCE: f64 = 0.02;
 
-/// H1 with coherence of hits with noise on force and responses; FRFs of one reference come of the same hits where `at_once`.
+/// H1 with coherence of hits with noise on force and responses; FRFs of one reference come of the same hits
+/// where `at_once`.
 fn struck(exact: &FrfSet, noise: &mut Noise, at_once: bool) -> FrfSet {
     let (n, count) = (exact.lines().len(), exact.pairs().len());
     let mut values = vec![Complex64::ZERO; n * count];
@@ -106,7 +109,8 @@ fn with_noise_of_the_force_the_six_numbers_keep_to_their_bound_in_three_hundred_
         let inside = scores.iter().filter(|s| s[e].abs() < 1.96).count() as f64 / scores.len() as f64;
         assert!(score <= 1.1 && (0.92..0.98).contains(&inside), "{name}: {score}, {inside}");
     }
-    // Errors that FRFs of one reference have in common are taken as each one's own: deviations are up to a fifth too small.
+    // Errors that FRFs of one reference have in common are taken as each one's own: deviations are up to a
+    // fifth too small.
     let scores = run(300, 701, true);
     for (e, name) in NAMES.iter().enumerate() {
         let score = rms(scores.iter().map(|s| s[e]));

@@ -1,4 +1,5 @@
-//! Several joints at once, in a chain and in a ring, on recordings that the simulated laboratory makes: it shares no mechanics with the model fitted.
+//! Several joints at once, in a chain and in a ring, on recordings that the simulated laboratory makes: it
+//! shares no mechanics with the model fitted.
 
 use crate::joint_fit::{NAMES, recorded, rms};
 use jointscope::comparison::{Comparison, Decomposed};
@@ -116,7 +117,8 @@ fn chi2_of_all(covariance: &[Vec<f64>], errors: &[f64]) -> f64 {
     x.iter().zip(errors).map(|(a, b)| a * b).sum()
 }
 
-/// Errors of all numbers in standard deviations, χ² of each run's errors together, χ² per degree of freedom of the fits.
+/// Errors of all numbers in standard deviations, χ² of each run's errors together, χ² per degree of freedom
+/// of the fits.
 struct Runs {
     scores: Vec<Vec<f64>>,
     together: Vec<f64>,
@@ -293,8 +295,9 @@ fn with_effect(fixture: &Fixture, effect: &str) -> Fixture {
     Fixture::from_value(&value).unwrap()
 }
 
-/// Two tests of a chain on the same drawn blocks, K a twentieth stiffer in the second, compared as `compare` does it: errors of the ratio of K11 over its stated deviation and the relative deviation, of
-/// K between the tests and of K to J within the first.
+/// Two tests of a chain on the same drawn blocks, K a twentieth stiffer in the second, compared as `compare`
+/// does it: errors of the ratio of K11 over its stated deviation and the relative deviation, of K between the
+/// tests and of K to J within the first.
 fn compared(count: u64, seed: u64) -> [Vec<[f64; 2]>; 2] {
     let fixture = fixture(Shape::Chain, "");
     let mut all = [Vec::new(), Vec::new()];

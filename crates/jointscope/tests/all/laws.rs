@@ -1,5 +1,6 @@
-//! What probabilities of laws are worth, on joints whose dynamic stiffness is any function of frequency: two rigid blocks on a joint, solved here by elimination of
-//! four equations a line, which share nothing with the model fitted.
+//! What probabilities of laws are worth, on joints whose dynamic stiffness is any function of frequency: two
+//! rigid blocks on a joint, solved here by elimination of four equations a line, which share nothing with the
+//! model fitted.
 
 use crate::joint_fit::{Case, EIGHT, fit, fixture, lines, parameters_of};
 use jointscope::decomposition::{LawFit, LawKind};
@@ -11,7 +12,8 @@ use num_complex::Complex64;
 
 type Real2 = [[f64; 2]; 2];
 
-/// What a joint really is: K, its losses D in units of stiffness in the middle of the band, what K changes by up to there, time or exponent, mass.
+/// What a joint really is: K, its losses D in units of stiffness in the middle of the band, what K changes by
+/// up to there, time or exponent, mass.
 #[derive(Debug, Clone)]
 pub(crate) struct Truth {
     pub kind: LawKind,
@@ -148,7 +150,8 @@ impl Draw<'_> {
         self.between(low.ln(), high.ln()).exp()
     }
 
-    /// A positive matrix of about `size` times K, distributed over its elements otherwise: √K·U·√Kᵀ with eigenvalues of U from 0.3 to 1.7.
+    /// A positive matrix of about `size` times K, distributed over its elements otherwise: √K·U·√Kᵀ with
+    /// eigenvalues of U from 0.3 to 1.7.
     fn beside(&mut self, k: &Real2, size: f64) -> Real2 {
         let (one, two) = (self.between(0.3, 1.7), self.between(0.3, 1.7));
         let (sin, cos) = self.between(0.0, std::f64::consts::PI).sin_cos();
@@ -203,7 +206,8 @@ struct Named {
     said: Vec<(f64, bool)>,
     /// Probability of the most probable one, and whether it is the truth.
     best: (f64, bool),
-    /// Whether χ² of every other law that has no more parameters, and does not hold the true one, is larger by 30.
+    /// Whether χ² of every other law that has no more parameters, and does not hold the true one, is larger
+    /// by 30.
     told: bool,
     chi2: f64,
 }

@@ -132,7 +132,8 @@ fn covered(deviations: &[f64]) -> [f64; 2] {
     [1.0, 2.0].map(|limit| within(limit) / deviations.len() as f64)
 }
 
-/// Deviations of δ's real part on all lines told, and of the closest law's first parameter, with noise and tolerances drawn anew.
+/// Deviations of δ's real part on all lines told, and of the closest law's first parameter, with noise and
+/// tolerances drawn anew.
 fn deviations(hidden: &Effect, delta: &dyn Fn(f64) -> f64, parameter: f64) -> [Vec<f64>; 2] {
     let (mut lines, mut parameters) = (Vec::new(), Vec::new());
     for seed in 100..120 {
@@ -145,8 +146,9 @@ fn deviations(hidden: &Effect, delta: &dyn Fn(f64) -> f64, parameter: f64) -> [V
     [lines, parameters]
 }
 
-/// Twenty realisations of 86 lines each: 0.68 and 0.95 would be perfect. The lines of one realisation share its tolerances, and a compliance that
-/// is hardly known is turned into a stiffness: there the lines cover less.
+/// Twenty realisations of 86 lines each: 0.68 and 0.95 would be perfect. The lines of one realisation share
+/// its tolerances, and a compliance that is hardly known is turned into a stiffness: there the lines cover
+/// less.
 #[test]
 fn stated_deviations_cover_the_truth_about_as_often_as_they_should() {
     let squared = |hz: f64| (std::f64::consts::TAU * hz).powi(2);

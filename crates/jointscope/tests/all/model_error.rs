@@ -8,7 +8,8 @@ use jointscope::{Fixture, FrfPair, FrfSet, Remarks};
 use jointscope_rig::{Instrument, drawn_within_tolerance, frfs, generator};
 use std::path::Path;
 
-/// Physics that the fixture does not state and no effect imitates exactly: blocks that bend far above the band, a joint with mass.
+/// Physics that the fixture does not state and no effect imitates exactly: blocks that bend far above the
+/// band, a joint with mass.
 fn everywhere_a_little_wrong() -> Vec<Effect> {
     let bending = |body: &str, hz: f64| {
         Effect::new(EffectKind::BodyFlexibility, Place::Body(body.into()), None, &[hz, 0.003])
@@ -153,7 +154,8 @@ fn what_is_hidden_in_a_solid_is_named_alone_and_with_its_size() {
     }
 }
 
-/// What lines ask for without knowing of errors of the model: bending of blocks far above the band leaves χ² a little above the noise.
+/// What lines ask for without knowing of errors of the model: bending of blocks far above the band leaves χ²
+/// a little above the noise.
 #[test]
 fn bodies_a_little_softer_than_rigid_are_not_named() {
     let mut asked_for = 0;
@@ -174,7 +176,8 @@ fn everywhere_a_little_softer() -> Vec<Effect> {
     vec![bending("A", 9_000.0), bending("B", 11_000.0)]
 }
 
-/// A model that is as far off in natural frequency as it probably is predicts badly beside every resonance, whatever was found.
+/// A model that is as far off in natural frequency as it probably is predicts badly beside every resonance,
+/// whatever was found.
 #[test]
 fn where_nobody_measured_a_repaired_model_predicts_closely_though_every_mode_is_a_little_off() {
     let believed = common::believed(common::RATIOS);

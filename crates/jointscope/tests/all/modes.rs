@@ -1,4 +1,5 @@
-//! Modes of FRFs without files, of the simulated cases, and of a real free beam whose resonances drift from hit to hit.
+//! Modes of FRFs without files, of the simulated cases, and of a real free beam whose resonances drift from
+//! hit to hit.
 
 use jointscope::fixture::Damping;
 use jointscope::recordings::{ReadOptions, Recording, Source};

@@ -1,4 +1,5 @@
-//! A real free beam whose fixture file leaves out shear, recorded without coherence, and what such recordings must not be taken for.
+//! A real free beam whose fixture file leaves out shear, recorded without coherence, and what such recordings
+//! must not be taken for.
 
 use crate::common;
 use jointscope::Says;
@@ -27,7 +28,8 @@ fn free_beam() -> Option<(Fixture, FrfSet)> {
 
 #[test]
 fn of_a_beam_whose_masses_were_moved_nothing_is_said_to_have_changed_that_may_be_nothing() {
-    // Two effects explain five modes exactly, at a stiffness of 0.6 to 12.7 times what it was and a mass of −30 to 190 g.
+    // Two effects explain five modes exactly, at a stiffness of 0.6 to 12.7 times what it was and a mass of
+    // −30 to 190 g.
     let before = recorded("clamped-beam-masses/healthy-1");
     let Some(((fixture, baseline), (_, frfs))) = before.zip(recorded("clamped-beam-masses/healthy-2")) else {
         return;
@@ -53,7 +55,8 @@ fn since(baseline: &str, now: &str) -> Option<Diagnosis> {
 
 #[test]
 fn a_mass_that_a_clamped_beam_has_lost_is_named_alone_and_may_sit_where_it_was() {
-    // 10.65 g at 50 mm, or 300 mm, which only the first mode would tell from it; one FRF that shows three modes of both states.
+    // 10.65 g at 50 mm, or 300 mm, which only the first mode would tell from it; one FRF that shows three
+    // modes of both states.
     let Some(diagnosis) = since("healthy-1", "loss-1") else { return };
     let [finding] = &diagnosis.findings[..] else { panic!("{}", diagnosis.says()) };
     assert_eq!(finding.effect.kind, EffectKind::AddedMass, "{}", diagnosis.says());
@@ -61,7 +64,8 @@ fn a_mass_that_a_clamped_beam_has_lost_is_named_alone_and_may_sit_where_it_was()
     let [low, high] = place.interval.unwrap();
     assert!(low < 0.05 && 0.05 < high && high - low < 0.04, "{}", finding.says());
     assert!((place.value - 0.05).abs() < 0.03, "{}", finding.says());
-    // The lightest of the masses that would do is the one that was taken off, within a fifth; the middle of them is not the heaviest that is possible.
+    // The lightest of the masses that would do is the one that was taken off, within a fifth; the middle of
+    // them is not the heaviest that is possible.
     let [most, least] = mass.interval.unwrap();
     assert!((-0.0165..-0.0087).contains(&least), "{}", finding.says());
     assert!(mass.value > most + 0.003, "{}", finding.says());
@@ -69,7 +73,8 @@ fn a_mass_that_a_clamped_beam_has_lost_is_named_alone_and_may_sit_where_it_was()
 
 #[test]
 fn what_would_change_every_frequency_by_a_third_is_no_change_between_like_modes() {
-    // The other way round: with a modulus of 1.9 times no mode of the model has a partner, and nothing is left to contradict it.
+    // The other way round: with a modulus of 1.9 times no mode of the model has a partner, and nothing is
+    // left to contradict it.
     let Some(diagnosis) = since("healthy-2", "healthy-1") else { return };
     for finding in &diagnosis.findings {
         let size = finding.estimates[finding.effect.kind.spec().size.parameter].value;
@@ -87,7 +92,8 @@ fn the_real_beam_is_told_its_shear_and_its_low_channel_with_intervals_that_hold_
         finding.unwrap_or_else(|| panic!("{}", diagnosis.says())).estimates[0].interval.unwrap()
     };
     let holds = |[low, high]: [f64; 2], value: f64| low < value && value < high;
-    // An independent fit of the natural frequencies alone: 31.1 MN with the rotary inertia of a metal section, 23.1 MN with none. The records struck beside the sensor are low by 0.825 ± 0.010.
+    // An independent fit of the natural frequencies alone: 31.1 MN with the rotary inertia of a metal
+    // section, 23.1 MN with none. The records struck beside the sensor are low by 0.825 ± 0.010.
     let shear = interval(EffectKind::ShearDeformation);
     assert!(holds(shear, 31.1e6) && holds(shear, 23.1e6) && shear[1] < 5.0 * shear[0], "{shear:?} N");
     let gain = interval(EffectKind::ChannelGain);
@@ -101,7 +107,8 @@ fn shear_and_a_low_channel_explain_the_real_beam_down_to_noise_and_drift_and_ben
     let Some((fixture, frfs)) = free_beam() else { return };
     let observation = Observation::new(&frfs, |_| true).unwrap();
     assert!(observation.lines().len() <= 900 && observation.recorded_lines() == 50_689);
-    // An independent calculation has 0.6 to 1.0 parts in 10,000 from the first record to the last, 2.1e-5 as a deviation.
+    // An independent calculation has 0.6 to 1.0 parts in 10,000 from the first record to the last, 2.1e-5 as
+    // a deviation.
     let drift = observation.drift().unwrap();
     assert_eq!(drift.resonances.len(), 4, "{drift:?}");
     for (hz, deviation, _) in &drift.resonances {

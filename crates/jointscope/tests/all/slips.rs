@@ -1,4 +1,5 @@
-//! What tests really do to data: the one hammer, filters of channels, paths past the joint, hum and overloads. Each from the simulated laboratory, named as such or left out.
+//! What tests really do to data: the one hammer, filters of channels, paths past the joint, hum and
+//! overloads. Each from the simulated laboratory, named as such or left out.
 
 use crate::common::{believed, four_pairs, hammer, measured};
 use crate::model_error::told;
@@ -261,7 +262,8 @@ fn a_soft_tip_whose_blow_dies_away_within_the_band_is_no_misfit() {
     }
 }
 
-/// A soft tip, and a force channel whose noise is a fiftieth of its signal: where the blow dies away H1 is too small by some per cent.
+/// A soft tip, and a force channel whose noise is a fiftieth of its signal: where the blow dies away H1 is
+/// too small by some per cent.
 fn noisy_force(seed: u64) -> HammerSetup {
     HammerSetup { corner: 150.0, averages: 8, noise_force: 0.02, ..hammer(seed) }
 }

@@ -1,4 +1,5 @@
-//! What an analyst states of effects, of the measuring chain and of the model's own error, and what a diagnosis makes of it.
+//! What an analyst states of effects, of the measuring chain and of the model's own error, and what a
+//! diagnosis makes of it.
 
 use crate::common;
 use crate::model_error::{solid, told};
@@ -67,7 +68,8 @@ fn misread(frfs: &FrfSet, gain: impl Fn(usize) -> f64) -> FrfSet {
     other
 }
 
-/// Recordings with a gain of response 3: of a lumped structure, and of a solid beside the workspace, of which any lumped model has an error.
+/// Recordings with a gain of response 3: of a lumped structure, and of a solid beside the workspace, of which
+/// any lumped model has an error.
 fn recordings(factor: f64) -> Vec<(Fixture, FrfSet)> {
     let lumped = common::recorded(vec![gain(factor)], 11);
     let of_a_solid = |(fixture, frfs): (Fixture, FrfSet)| {

@@ -1,4 +1,5 @@
-//! Where along a beam a finding may sit: mirrored places that no FRF of the test tells apart, and one that does.
+//! Where along a beam a finding may sit: mirrored places that no FRF of the test tells apart, and one that
+//! does.
 
 use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Estimate, Finding};
 use jointscope::fixture::{Effect, EffectKind, Place};

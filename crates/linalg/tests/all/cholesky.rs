@@ -53,7 +53,8 @@ fn inverse_of_lower(n: usize, factor: &Cholesky) -> Vec<Vec<f64>> {
 
 #[test]
 fn the_library_factorises_as_the_few_lines_here_do() {
-    // From 64 rows on the library factorises; `semidefinite_factor` and what is factorised without it are a few lines.
+    // From 64 rows on the library factorises; `semidefinite_factor` and what is factorised without it are a
+    // few lines.
     let n = 64 + 13;
     let entry = |i: usize, j: usize| {
         f64::from(u8::from(i == j)) + 0.3 * (0.7 * i as f64).sin() * (0.7 * j as f64).sin()

@@ -4,7 +4,8 @@ use proptest::prelude::*;
 /// Coordinates up to which modes are found without the library.
 const FEW: usize = 8;
 
-/// The modes of `n` coordinates as the library finds them: beside them stand so many of unit mass, uncoupled and stiffer than `largest`, that they are not few.
+/// The modes of `n` coordinates as the library finds them: beside them stand so many of unit mass, uncoupled
+/// and stiffer than `largest`, that they are not few.
 fn by_library(n: usize, mass: &[f64], stiffness: &[f64], largest: f64) -> (Vec<f64>, Vec<Vec<f64>>) {
     let all = FEW + 1;
     let beside = |own: &[f64], other: f64| -> Vec<f64> {
@@ -46,7 +47,8 @@ proptest! {
         for r in 0..n {
             prop_assert!((few.eigenvalues()[r] - library[r]).abs() < 1e-12 * largest, "mode {}", r);
         }
-        // Shapes of repeated values are free within their space; what all of them make of the stiffness is not.
+        // Shapes of repeated values are free within their space; what all of them make of the stiffness is
+        // not.
         for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
             let whole = |values: &[f64], shape: &dyn Fn(usize) -> Vec<f64>| -> f64 {
                 (0..n).map(|r| shape(r)[i] * shape(r)[j] / (1.0 + values[r] / largest)).sum()
@@ -93,7 +95,8 @@ fn a_chain_of_two_hundred_stiff_springs_has_its_closed_form_frequencies() {
     }
 }
 
-/// Hermite elements of a beam with EI = m = L = 1 (eq of any textbook), its left end on springs of `clamp` and `clamp`/4, as `clamp` may be zero.
+/// Hermite elements of a beam with EI = m = L = 1 (eq of any textbook), its left end on springs of `clamp`
+/// and `clamp`/4, as `clamp` may be zero.
 fn beam(elements: usize, clamp: f64) -> (usize, Vec<f64>, Vec<f64>) {
     let (n, h) = (2 * (elements + 1), 1.0 / elements as f64);
     let k =

@@ -1,4 +1,5 @@
-//! The tests of this crate, in one program and all of public functions: within the crate, they would have it compiled a second time.
+//! The tests of this crate, in one program and all of public functions: within the crate, they would have it
+//! compiled a second time.
 #![allow(clippy::unwrap_used)] // helpers of tests fail as tests do
 
 #[cfg(feature = "sparse")]

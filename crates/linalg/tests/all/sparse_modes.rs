@@ -41,7 +41,8 @@ fn a_system_as_small_as_the_block_is_solved_too() {
     assert!((modes.eigenvalues[0] - 1.0).abs() < 1e-12 && (modes.eigenvalues[1] - 3.0).abs() < 1e-12);
 }
 
-/// `copies` chains of n unit masses beside each other, each held at one end: every eigenvalue as often as there are chains.
+/// `copies` chains of n unit masses beside each other, each held at one end: every eigenvalue as often as
+/// there are chains.
 fn equal_chains(copies: usize, n: usize) -> (SparseSymmetric, SparseSymmetric) {
     let couples: Vec<Vec<usize>> =
         (0..copies * n).map(|i| if i % n == 0 { vec![i] } else { vec![i - 1, i] }).collect();

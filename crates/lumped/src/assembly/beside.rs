@@ -1,14 +1,17 @@
 //! The modes of an assembly that differs next to nothing from one at hand, to first order.
 //!
-//! For derivatives by differences alone: a step of a thousandth of a standard deviation moves the matrices by so little that a whole eigenproblem tells no more than first-order perturbation
-//! (Fox and Kapoor 1968), with dM and dK between the two assemblies themselves:
+//! For derivatives by differences alone: a step of a thousandth of a standard deviation moves the matrices by
+//! so little that a whole eigenproblem tells no more than first-order perturbation (Fox and Kapoor 1968),
+//! with dM and dK between the two assemblies themselves:
 //!
 //! dλ_r = φ_rᵀ (dK − λ_r dM) φ_r,
 //! dφ_r = Σ_k c_kr φ_k, c_kr = φ_kᵀ (dK − λ_r dM) φ_r / (λ_r − λ_k), c_rr = −½ φ_rᵀ dM φ_r.
 //!
-//! Condensed modes are as many as coordinates, and orthogonal but for a little inertia that is left out of them anyway, so the sums are complete. Two modes far above the band may have one
-//! eigenvalue, as equal stretches of a beam do; what they yield together statically is all that the band sees of them, and c_kr = −φ_kᵀ dK φ_r / (λ_k + λ_r) for both orders of k
-//! and r gives exactly that. Shapes are not written out: the participation of a motion changes by cᵀ times itself.
+//! Condensed modes are as many as coordinates, and orthogonal but for a little inertia that is left out of
+//! them anyway, so the sums are complete. Two modes far above the band may have one eigenvalue, as equal
+//! stretches of a beam do; what they yield together statically is all that the band sees of them, and
+//! c_kr = −φ_kᵀ dK φ_r / (λ_k + λ_r) for both orders of k and r gives exactly that. Shapes are not written
+//! out: the participation of a motion changes by cᵀ times itself.
 
 use super::coordinates::{Coordinates, coordinates};
 use super::matrices::Matrices;
@@ -24,7 +27,8 @@ use std::sync::Arc;
 const FAR: f64 = 10.0;
 /// Share of another mode that a mode takes on at most: the second order is then this share of the first.
 const TURNED: f64 = 2e-3;
-/// Rounding of a node's place as a share of the length. One that moves along with what turns the beam there leaves shapes behind that have their kinks elsewhere.
+/// Rounding of a node's place as a share of the length. One that moves along with what turns the beam there
+/// leaves shapes behind that have their kinks elsewhere.
 const ROUNDING: f64 = 1e-12;
 
 impl Assembly {
@@ -33,22 +37,27 @@ impl Assembly {
         self.turned.is_some()
     }
 
-    /// Whether assemblies of fixtures next to this one may take their modes from its own: there is an eigenproblem to be saved.
+    /// Whether assemblies of fixtures next to this one may take their modes from its own: there is an
+    /// eigenproblem to be saved.
     pub(crate) fn has_neighbours(fixture: &Fixture) -> bool {
         has_meshed_bodies(fixture) && !is_one_free_body(fixture)
     }
 
-    /// The amplitudes of all modes coordinate after coordinate: its own, and those of what it is rebuilt from.
+    /// The amplitudes of all modes coordinate after coordinate: its own, and those of what it is rebuilt
+    /// from.
     pub(crate) fn rows(&self) -> Rows {
         let plain = self.plain.as_ref().map(|plain| by_coordinate(&plain.assembly.basis));
         Rows { own: by_coordinate(&self.basis), plain }
     }
 
-    /// The assembly of `moved`, which differs next to nothing from `fixture`, whose assembly this is: modes to first order from those at hand, of which these are the
-    /// `rows`. `None` where there is more to solve than that: fixtures that differ by more or in kind, beams whose modes cost little anyway, modes too close to each other.
+    /// The assembly of `moved`, which differs next to nothing from `fixture`, whose assembly this is: modes
+    /// to first order from those at hand, of which these are the `rows`. `None` where there is more to solve
+    /// than that: fixtures that differ by more or in kind, beams whose modes cost little anyway, modes too
+    /// close to each other.
     ///
-    /// Of a beam that effects rebuild these are less sharp: condensed modes leave a little inertia out, more of it where sections resist being turned (derivatives by the rotary inertia are off by a
-    /// hundredth), and how the viscosity of the modes before is shared among the rebuilt ones stays as it is.
+    /// Of a beam that effects rebuild these are less sharp: condensed modes leave a little inertia out, more
+    /// of it where sections resist being turned (derivatives by the rotary inertia are off by a hundredth),
+    /// and how the viscosity of the modes before is shared among the rebuilt ones stays as it is.
     pub(crate) fn beside(
         &self,
         (fixture, rows): (&Fixture, &Rows),
@@ -73,7 +82,8 @@ impl Assembly {
         (assembly.elastic == self.elastic).then_some(assembly)
     }
 
-    /// Matrices of a fixture `moved`, with the effects that rebuild beams if this assembly has them, and modes to first order; not damped yet.
+    /// Matrices of a fixture `moved`, with the effects that rebuild beams if this assembly has them, and
+    /// modes to first order; not damped yet.
     fn turned(&self, (fixture, rows): (&Fixture, &[f64]), moved: &Fixture, highest_hz: f64) -> Option<Self> {
         if self.turned.is_some() || in_the_modes(fixture) != in_the_modes(moved) {
             return None;
@@ -124,8 +134,9 @@ impl Coordinates {
         }
     }
 
-    /// What a shape is multiplied by, coordinate by coordinate, to be that of the same motion after a change from `before`: where a beam gets longer deflections stay and slopes get
-    /// less. Slopes that do not go with their deflections are no motion of the band; condensed modes know little of those.
+    /// What a shape is multiplied by, coordinate by coordinate, to be that of the same motion after a change
+    /// from `before`: where a beam gets longer deflections stay and slopes get less. Slopes that do not go
+    /// with their deflections are no motion of the band; condensed modes know little of those.
     fn scales(&self, before: &Coordinates) -> Vec<f64> {
         let slope = match (self, before) {
             (Coordinates::Beam { mesh, .. }, Coordinates::Beam { mesh: before, .. }) => {
@@ -185,7 +196,8 @@ fn row_by_row(rows: &[f64], scales: &[f64], before: &[f64], after: &[f64]) -> Op
     all
 }
 
-/// λ + dλ and c of a change, of which lower triangles are given; `None` where that is not small to modes in or near the band.
+/// λ + dλ and c of a change, of which lower triangles are given; `None` where that is not small to modes in
+/// or near the band.
 fn turned(
     values: &[f64],
     mass: Option<&[f64]>,

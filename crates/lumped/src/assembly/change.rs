@@ -1,13 +1,15 @@
 //! How the modes of an assembly of rigid bodies change with its fixture, to first order.
 //!
-//! With dM and dK of a change and mass-normalised shapes, for a mode r and any other one k (Fox and Kapoor 1968):
+//! With dM and dK of a change and mass-normalised shapes, for a mode r and any other one k (Fox and Kapoor
+//! 1968):
 //!
 //! dλ_r = φ_rᵀ (dK − λ_r dM) φ_r,
 //! dφ_r = Σ_k c_kr φ_k, c_kr = φ_kᵀ (dK − λ_r dM) φ_r / (λ_r − λ_k), c_rr = −½ φ_rᵀ dM φ_r.
 //!
-//! All modes are known, so the sum is complete and nothing is solved for. Motions as rigid may turn among each other; what they answer together does not depend on
-//! it, and c_kr = −½ φ_kᵀ dM φ_r keeps them orthonormal. dM, dK and the rows that read stations are differences between two fixtures: these matrices are smooth where
-//! FRFs are not, and a step far too small for FRFs leaves them eight digits.
+//! All modes are known, so the sum is complete and nothing is solved for. Motions as rigid may turn among
+//! each other; what they answer together does not depend on it, and c_kr = −½ φ_kᵀ dM φ_r keeps them
+//! orthonormal. dM, dK and the rows that read stations are differences between two fixtures: these matrices
+//! are smooth where FRFs are not, and a step far too small for FRFs leaves them eight digits.
 
 use super::coordinates::{Coordinates, coordinates};
 use super::matrices::Matrices;
@@ -37,8 +39,8 @@ pub(crate) fn has_meshed_bodies(fixture: &Fixture) -> bool {
 }
 
 impl Assembly {
-    /// What a `step` changes that leads from `fixture`, whose assembly this is, to `moved`, a fixture of the same bodies, joints and supports; `None` for meshed
-    /// bodies, and where the change has no derivative.
+    /// What a `step` changes that leads from `fixture`, whose assembly this is, to `moved`, a fixture of the
+    /// same bodies, joints and supports; `None` for meshed bodies, and where the change has no derivative.
     pub(crate) fn change(&self, fixture: &Fixture, moved: &Fixture, step: f64) -> Option<AssemblyChange> {
         if has_meshed_bodies(moved) || in_the_modes(fixture) != in_the_modes(moved) {
             return None;
@@ -72,7 +74,8 @@ impl Assembly {
         all
     }
 
-    /// dλ_r and c_kr of changes in the modes' coordinates; `None` where two modes that are not rigid have one eigenvalue.
+    /// dλ_r and c_kr of changes in the modes' coordinates; `None` where two modes that are not rigid have one
+    /// eigenvalue.
     fn mixed(&self, mass: Option<Vec<f64>>, stiffness: Option<Vec<f64>>) -> Option<(Vec<f64>, Vec<f64>)> {
         let n = self.order;
         if mass.is_none() && stiffness.is_none() {
@@ -100,7 +103,8 @@ impl Assembly {
         Some(((0..n).map(change).collect(), mixing))
     }
 
-    /// The change of each mode's damping by that of its eigenvalue, of its motion at supports and of the law; `None` where ratios pass to other modes.
+    /// The change of each mode's damping by that of its eigenvalue, of its motion at supports and of the law;
+    /// `None` where ratios pass to other modes.
     fn damping_change(
         &self,
         change: &AssemblyChange,
@@ -137,7 +141,8 @@ impl Assembly {
         Some(after.iter().zip(&self.damping).map(slope).collect())
     }
 
-    /// The change of `participation` in each mode: of weighted motions that are `before`, and `after` the step.
+    /// The change of `participation` in each mode: of weighted motions that are `before`, and `after` the
+    /// step.
     pub(crate) fn participation_change<'s>(
         &self,
         change: &AssemblyChange,
@@ -158,7 +163,8 @@ impl Assembly {
         places.sort_unstable();
         places.dedup();
         for i in places {
-            // Sums before differences: what stays the same leaves exactly nothing, which stiff joints would multiply.
+            // Sums before differences: what stays the same leaves exactly nothing, which stiff joints would
+            // multiply.
             let t = (at(&there, i) - at(&here, i)) / change.step;
             if t != 0.0 {
                 all.iter_mut().enumerate().for_each(|(r, all)| *all += self.basis.shape(r)[i] * t);

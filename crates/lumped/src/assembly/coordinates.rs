@@ -27,7 +27,8 @@ impl Coordinates {
         }
     }
 
-    /// Adds what a component of the motion at `x` reads of the assembly's coordinates to `entries`: the few that are not zero, by their place, ascending.
+    /// Adds what a component of the motion at `x` reads of the assembly's coordinates to `entries`: the few
+    /// that are not zero, by their place, ascending.
     pub(super) fn add_entries(&self, x: f64, dof: Dof, entries: &mut Vec<(usize, f64)>) {
         match (self, dof) {
             (Coordinates::Rigid { first, x_cg }, Dof::Translation) => {
@@ -91,7 +92,8 @@ pub(super) fn stretches(places: &[Coordinates]) -> Vec<Stretch> {
     places.iter().flat_map(of).collect()
 }
 
-/// Where something holds the body, the most important first: joints bend it there. A bare beam is meshed evenly.
+/// Where something holds the body, the most important first: joints bend it there. A bare beam is meshed
+/// evenly.
 fn attachments(fixture: &Fixture, body: usize) -> Vec<Attachment> {
     if is_bare(fixture) {
         return Vec::new();

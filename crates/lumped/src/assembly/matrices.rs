@@ -103,7 +103,8 @@ impl Matrices {
     }
 }
 
-/// Adds `factor` times the product of a row of so many coordinates, of which few entries are not zero, with itself.
+/// Adds `factor` times the product of a row of so many coordinates, of which few entries are not zero, with
+/// itself.
 fn add_product(matrix: &mut [f64], order: usize, read: &[(usize, f64)], factor: f64) {
     for (i, a) in read {
         read.iter().for_each(|(j, b)| matrix[i * order + j] += factor * a * b);

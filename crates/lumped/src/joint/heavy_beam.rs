@@ -1,7 +1,8 @@
 //! The dynamic stiffness of a uniform beam with distributed mass, by doubling a short element.
 //!
-//! A short element is as much stiffer as the cube of its share of the length, and what its mass adds is then lost in the rounding of its stiffness: to 1e-11 of the whole beam's, which
-//! near a pole moves residues by 1e-7. So what is doubled is what mass adds; the static stiffness of each length is known in closed form.
+//! A short element is as much stiffer as the cube of its share of the length, and what its mass adds is then
+//! lost in the rounding of its stiffness: to 1e-11 of the whole beam's, which near a pole moves residues by
+//! 1e-7. So what is doubled is what mass adds; the static stiffness of each length is known in closed form.
 
 use super::two_ends::TwoEnds;
 use crate::lanes::Lines;
@@ -47,8 +48,8 @@ impl HeavyBeam {
     }
 }
 
-/// A matrix of a beam that is the same seen from either end, where a rotation of the one is the opposite of the other's: near [[a, b], [b, d]],
-/// far [[a, −b], [−b, d]], cross [[p, q], [−q, t]].
+/// A matrix of a beam that is the same seen from either end, where a rotation of the one is the opposite of
+/// the other's: near [[a, b], [b, d]], far [[a, −b], [−b, d]], cross [[p, q], [−q, t]].
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct MirrorBeam<T> {
     a: T,
@@ -98,10 +99,12 @@ impl<T: Lines> MirrorBeam<T> {
         }
     }
 
-    /// What mass adds to two elements end to end, of what it adds to each; `rest` is an element's static stiffness.
+    /// What mass adds to two elements end to end, of what it adds to each; `rest` is an element's static
+    /// stiffness.
     ///
-    /// Eliminating the motion between them takes x·y/(2z) off each element of the matrix, z being a or d: far + near, which is to be inverted, is diagonal. What mass adds to that is
-    /// (x₀·δy + y₀·δx + δx·δy − (x₀y₀/z₀)·δz)/(2z), x₀, y₀ and z₀ at rest, which subtracts nothing that is large.
+    /// Eliminating the motion between them takes x·y/(2z) off each element of the matrix, z being a or d:
+    /// far + near, which is to be inverted, is diagonal. What mass adds to that is (x₀·δy + y₀·δx + δx·δy −
+    /// (x₀y₀/z₀)·δz)/(2z), x₀, y₀ and z₀ at rest, which subtracts nothing that is large.
     #[inline(always)]
     fn doubled(self, rest: &MirrorBeam<f64>) -> Self {
         let MirrorBeam { a, b, d, p, q, t } = self;
@@ -145,7 +148,8 @@ mod tests {
 
     #[test]
     fn what_mass_adds_is_known_to_every_digit_however_little_it_is() {
-        // Six numbers at a frequency and a little above it: what differs is the mass's share, (1 + ε)² − 1 of it, with no steps of rounding between.
+        // Six numbers at a frequency and a little above it: what differs is the mass's share, (1 + ε)² − 1 of
+        // it, with no steps of rounding between.
         let beam = HeavyBeam::new(160.0, Some(3e6), 0.08, 0.04);
         let at = |omega: f64| {
             let ends = beam.at(Complex64::new(0.0, omega), Complex64::new(1.0, 0.004));
@@ -155,12 +159,14 @@ mod tests {
         let omega = 4000.0;
         let (one, other) = (at(omega), at(omega * (1.0 + 1e-6)));
         for (i, (one, other)) in one.iter().zip(&other).enumerate() {
-            // To first order in the mass, which the fourth power of frequency corrects by less than a hundredth.
+            // To first order in the mass, which the fourth power of frequency corrects by less than a
+            // hundredth.
             let expected = 2e-6 * (one - at_rest.at(i, i));
             let found = other - one;
             assert!((found / expected - 1.0).norm() < 0.02, "{i}: {found} against {expected}");
         }
-        // Steps of 1e-10 of the frequency, which move 1e11 N/m of a short element by less than its last digit, still show one slope.
+        // Steps of 1e-10 of the frequency, which move 1e11 N/m of a short element by less than its last
+        // digit, still show one slope.
         let step = |k: f64| (at(omega * (1.0 + k * 1e-10))[0] - one[0]) / k;
         let steps: Vec<f64> = (1..9).map(|k| step(f64::from(k)).re).collect();
         for (k, found) in steps.iter().enumerate() {

@@ -7,8 +7,8 @@ use num_complex::Complex64;
 
 /// A joint without mass over time, on d = u_to − R·u_from.
 ///
-/// With the slips e of its interfaces and the states w of its relaxations, δ = d − Σ rᵢeᵢ, τⱼẇⱼ = δ − wⱼ, its force is
-/// f = K((1 + Σρⱼ) δ − Σ ρⱼwⱼ) + C δ̇, and rᵢᵀf = kᵢeᵢ + cᵢėᵢ.
+/// With the slips e of its interfaces and the states w of its relaxations, δ = d − Σ rᵢeᵢ, τⱼẇⱼ = δ − wⱼ, its
+/// force is f = K((1 + Σρⱼ) δ − Σ ρⱼwⱼ) + C δ̇, and rᵢᵀf = kᵢeᵢ + cᵢėᵢ.
 #[derive(Debug, Clone)]
 pub(crate) struct JointInTime {
     /// K: elastic, its factor, shear and the interfaces without a state in it.
@@ -21,13 +21,15 @@ pub(crate) struct JointInTime {
     pub slips: Vec<([f64; 2], f64, f64)>,
 }
 
-/// Time constant of a spring in series that has no dashpot but needs a state, s: far below any sampling interval.
+/// Time constant of a spring in series that has no dashpot but needs a state, s: far below any sampling
+/// interval.
 const INSTANT: f64 = 1e-10;
 
 impl JointDynamics {
     /// The joint over time; `Err` with the name of the effect that has no form there.
     ///
-    /// The fixture's own loss factor is not part of it: over time its modes are damped by its viscous equivalent.
+    /// The fixture's own loss factor is not part of it: over time its modes are damped by its viscous
+    /// equivalent.
     pub(crate) fn in_time(&self) -> Result<JointInTime, &'static str> {
         if self.loss != 0.0 {
             return Err("loss_factor");

@@ -22,7 +22,8 @@ pub(crate) struct ModelChange {
 }
 
 impl Model {
-    /// What a `step` changes that leads from `fixture`, whose model this is, to `moved`; `None` where that cannot be told from this model.
+    /// What a `step` changes that leads from `fixture`, whose model this is, to `moved`; `None` where that
+    /// cannot be told from this model.
     pub(crate) fn change(&self, fixture: &Fixture, moved: &Fixture, step: f64) -> Option<ModelChange> {
         let bending = bending_coordinates(moved);
         let flexible: Vec<bool> =

@@ -8,14 +8,17 @@ use jointscope_damping::DampingLaw;
 use jointscope_linalg::Field;
 use num_complex::Complex64;
 
-/// Entries that are summed together, by the first of these numbers that leaves the fewest places of the last tile empty: each function that is fetched serves in several sums. A change of rank one
-/// between two outputs and two inputs has nine.
+/// Entries that are summed together, by the first of these numbers that leaves the fewest places of the last
+/// tile empty: each function that is fetched serves in several sums. A change of rank one between two outputs
+/// and two inputs has nine.
 const TILES: [usize; 2] = [4, 3];
-/// A change of damping beside that by its law is none below these shares of the latter and of the damping itself: what differences leave of it.
+/// A change of damping beside that by its law is none below these shares of the latter and of the damping
+/// itself: what differences leave of it.
 const ROUNDING: (f64, f64) = (1e-5, 1e-9);
 
-/// On each block of lines: 1/D of every distinct denominator; (1 + iη/λ + s τ)/D² of every mode that is not rigid, what its λ changes; s/D², or i/D² for structural
-/// damping, of every distinct denominator, what damping changes by itself.
+/// On each block of lines: 1/D of every distinct denominator; (1 + iη/λ + s τ)/D² of every mode that is not
+/// rigid, what its λ changes; s/D², or i/D² for structural damping, of every distinct denominator, what
+/// damping changes by itself.
 #[derive(Debug, Clone)]
 pub(super) struct Rows {
     /// Each mode's place among the distinct denominators.
@@ -198,7 +201,8 @@ impl Rows {
     }
 }
 
-/// What each mode's damping does for a change of λ: it grows as √λ where ratios are known, in proportion where structural damping is.
+/// What each mode's damping does for a change of λ: it grows as √λ where ratios are known, in proportion
+/// where structural damping is.
 fn laws(model: &Model, modes: &[Denominator]) -> Vec<ByLaw> {
     let (law, own) = (model.damping_law(), model.assembly_modes());
     let of = |(r, mode): (usize, &Denominator)| {

@@ -8,7 +8,8 @@ use crate::receptances::divided;
 use crate::terms::Terms;
 use jointscope_linalg::{Field, LuWorkspace};
 
-/// On each block R_o, a row over the stations of the change for each output; R_i the same for each input; then g_o and g_i.
+/// On each block R_o, a row over the stations of the change for each output; R_i the same for each input;
+/// then g_o and g_i.
 #[derive(Debug, Clone)]
 pub(super) struct Through {
     outputs: usize,

@@ -26,7 +26,8 @@ fn add(z: &mut DMatrix<Complex64>, row: &[f64], value: Complex64) {
     }
 }
 
-/// The dense dynamic stiffness of the fixture without its effects: the assembly by its matrices, what they do not hold of supports added by hand.
+/// The dense dynamic stiffness of the fixture without its effects: the assembly by its matrices, what they do
+/// not hold of supports added by hand.
 fn dynamic_stiffness(fixture: &Fixture, assembly: &Assembly, hz: f64) -> DMatrix<Complex64> {
     let n = assembly.order();
     let omega = TAU * hz;
@@ -119,8 +120,8 @@ proptest! {
         for o in 0..4 {
             for i in 0..3 {
                 let (a, b) = (found[o * 3 + i], expected[o * 3 + i]);
-                // Relative to the driving points, so that an antiresonance is no failure. The bar's short elements
-                // have frequencies 1e10 times above soft joints', which costs both solutions digits.
+                // Relative to the driving points, so that an antiresonance is no failure. The bar's short
+                // elements have frequencies 1e10 times above soft joints', which costs both solutions digits.
                 let own = |s: &Station| direct(&fixture, &[*s], &[*s], hz)[0].norm();
                 let scale = (own(&outputs[o]) * own(&inputs[i])).sqrt();
                 prop_assert!((a - b).norm() < 3e-5 * scale, "({o},{i}) at {hz} Hz: {a} against {b}");
@@ -269,7 +270,8 @@ fn two_blocks(damping: &str, effect: &str) -> Fixture {
     .unwrap()
 }
 
-/// Receptances of [`two_blocks`] with `effect` against those of the bare blocks' dense dynamic stiffness as `by_hand` changes it.
+/// Receptances of [`two_blocks`] with `effect` against those of the bare blocks' dense dynamic stiffness as
+/// `by_hand` changes it.
 #[track_caller]
 fn check_effect(effect: &str, by_hand: impl Fn(DMatrix<Complex64>, &Assembly, f64) -> DMatrix<Complex64>) {
     let stations =

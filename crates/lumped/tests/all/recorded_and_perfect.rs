@@ -119,7 +119,8 @@ fn a_window_adds_its_decay_to_the_half_width_of_a_peak() {
     };
     let (omega, plain) = value_at_peak("");
     let (_, windowed) = value_at_peak(r#"{"kind": "exponential_window", "place": "all", "decay": 5}"#);
-    // A peak is as high as its half-width ζω (+ decay) is small; which of the two modes is higher is the same.
+    // A peak is as high as its half-width ζω (+ decay) is small; which of the two modes is higher is the
+    // same.
     let ratio = plain / windowed;
     let expected = [0.004, 0.006].map(|zeta| (zeta * omega + 5.0) / (zeta * omega));
     assert!(expected.iter().any(|e| (ratio / e - 1.0).abs() < 0.01), "{ratio} against {expected:?}");

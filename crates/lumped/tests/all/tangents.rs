@@ -16,7 +16,8 @@ struct Made {
 
 const NUMBERS: usize = 22;
 
-/// Two blocks, a storey, a beam joint and one of given stiffness. The numbers are multiples of what is written here.
+/// Two blocks, a storey, a beam joint and one of given stiffness. The numbers are multiples of what is
+/// written here.
 fn fixture(made: Made, by: &[f64; NUMBERS]) -> Fixture {
     let damping = [
         format!(r#"{{ "modal_ratios": [{}, {}] }}"#, 0.02 * by[0], 0.01 * by[1]),
@@ -128,7 +129,8 @@ proptest! {
         let (pairs, lines) = (pairs(), lines());
         let tangent = Tangent::new(fixture(made, &numbers), &pairs, &lines, Instrument::AsRecorded).unwrap();
         for by in 0..NUMBERS {
-            // Either way, so that a step may be long enough for its rounding not to show: what fixtures curve by cancels.
+            // Either way, so that a step may be long enough for its rounding not to show: what fixtures curve
+            // by cancels.
             const STEP: f64 = 5e-6;
             let toward = |step: f64, some: Option<&[usize]>| {
                 let mut moved = numbers;
@@ -140,7 +142,8 @@ proptest! {
             let expected = difference(made, &numbers, by);
             for (frf, (found, expected)) in found.chunks(lines.len()).zip(expected.chunks(lines.len())).enumerate() {
                 let size = expected.iter().map(|value| value.norm()).fold(0.0, f64::max);
-                // What hardly changes is told to a share of the FRF: a joint that is taken out of the modes and put back by stations loses digits.
+                // What hardly changes is told to a share of the FRF: a joint that is taken out of the modes
+                // and put back by stations loses digits.
                 let level = predicted(made, &numbers, by, 0.0).iter().map(|value| value.norm()).fold(0.0, f64::max);
                 for (line, (found, expected)) in found.iter().zip(expected).enumerate() {
                     prop_assert!(

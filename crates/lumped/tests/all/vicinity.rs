@@ -19,7 +19,8 @@ const NUMBERS: [&str; 11] = [
     "the shear stiffness",
     "the rotary inertia",
 ];
-/// Relative steps, as far as rounding of element lengths asks for and widths of resonances allow: of derivatives, and of the differences they are compared with.
+/// Relative steps, as far as rounding of element lengths asks for and widths of resonances allow: of
+/// derivatives, and of the differences they are compared with.
 const STEP: f64 = 2e-5;
 const WIDE: f64 = 1e-4;
 const HIGHEST: f64 = 1500.0;

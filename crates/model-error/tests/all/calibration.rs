@@ -1,4 +1,5 @@
-//! What a free fit says of a recording against what the model that made it says, in the deviations that the fit states.
+//! What a free fit says of a recording against what the model that made it says, in the deviations that the
+//! fit states.
 
 use crate::common::*;
 use jointscope_model_error::{Expected, RecordedModes, WeightedFrfs};
@@ -7,8 +8,9 @@ use jointscope_spectra::SpectralLines;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// Highest lines, Hz: both modes of the blocks in the band, or the second above it, in the upper residual. With them the largest difference of a
-/// feature, in standard deviations: what a few residual terms leave of a mode above the band.
+/// Highest lines, Hz: both modes of the blocks in the band, or the second above it, in the upper residual.
+/// With them the largest difference of a feature, in standard deviations: what a few residual terms leave of
+/// a mode above the band.
 const BANDS: [(f64, f64); 2] = [(1500.0, 0.001), (600.0, 0.3)];
 
 #[test]

@@ -84,7 +84,8 @@ fn the_free_fit_finds_the_textbook_values_where_noise_is_nil() {
     for (residue, expected) in mode.residues.iter().zip([a * a, a * b]) {
         assert!((residue - expected).norm() < 1e-5, "residue {residue} 1/kg, expected {expected} 1/kg");
     }
-    // The mass line of either FRF is 1/(m₁ + m₂); it stands after poles and residues, the upper residual behind it.
+    // The mass line of either FRF is 1/(m₁ + m₂); it stands after poles and residues, the upper residual
+    // behind it.
     let features = recorded.features();
     let mass_lines = &features[2 + 4..];
     assert!(
@@ -142,7 +143,8 @@ fn an_error_of_the_shape_moves_residues_by_both_channels() {
     let (a, b) = shape();
     let rms = ((a * a + b * b) / 2.0).sqrt();
     let scale = compared.recorded.modes[0].scale;
-    // With independent errors e₁, e₂ of the two channels, of deviation rms: δ(φ₁φ₁) = 2φ₁e₁, δ(φ₂φ₁) = φ₁e₂ + φ₂e₁.
+    // With independent errors e₁, e₂ of the two channels, of deviation rms: δ(φ₁φ₁) = 2φ₁e₁,
+    // δ(φ₂φ₁) = φ₁e₂ + φ₂e₁.
     let expected = [[4.0 * a * a, 2.0 * a * b], [2.0 * a * b, a * a + b * b]];
     // A modal mass errs by the same share, and both residues with it.
     let residues = [a * a, a * b];
@@ -197,7 +199,8 @@ fn what_a_model_lacks_above_the_band_it_lacks_in_all_frfs_and_in_each() {
 
 #[test]
 fn an_error_of_the_damping_is_one_of_ratios_and_of_what_is_in_quadrature() {
-    // A dashpot at one of two masses is all the damping there is. It couples the modes, and to first order ratios and quadrature are in proportion to it.
+    // A dashpot at one of two masses is all the damping there is. It couples the modes, and to first order
+    // ratios and quadrature are in proportion to it.
     let damped = |damping: f64| {
         let support =
             format!(r#"{{"kind": "support", "place": "A", "x": 0, "stiffness": 2e6, "damping": {damping}}}"#);
@@ -303,7 +306,8 @@ fn features_go_on_smoothly_where_a_suspension_crosses_the_lowest_line() {
     let mut compared = Compared::of(&on(lowest), recorded());
     let found = compared.modelled.clone();
     let near = |stiffness: f64| ModelledModes::near(&on(stiffness), &compared.recorded, &found).unwrap();
-    // The recording has no mode at the lowest line. What the model's passes it with, from a hair below to either side:
+    // The recording has no mode at the lowest line. What the model's passes it with, from a hair below to
+    // either side:
     let (mut low, mut high) = (0.9 * lowest, 1.1 * lowest);
     for _ in 0..40 {
         let middle = 0.5 * (low + high);

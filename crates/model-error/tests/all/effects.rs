@@ -5,8 +5,8 @@ use jointscope_model_error::ModelledMode;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Modelled features of the plain blocks and of those with `physics`, between the channels of a recording up to 600 Hz: the second mode is in the
-/// upper residual.
+/// Modelled features of the plain blocks and of those with `physics`, between the channels of a recording up
+/// to 600 Hz: the second mode is in the upper residual.
 fn modelled_beside(physics: &str) -> (Compared, Compared) {
     let recorded = Recorded::of(&blocks(""), &four(), &lines(600.0), noise(None)).modes();
     (Compared::of(&blocks(""), recorded.clone()), Compared::of(&blocks(physics), recorded))
@@ -128,8 +128,9 @@ fn a_recording_of_an_effect_shows_the_features_that_are_modelled_for_it() {
     }
 }
 
-/// Resonators of 20 g and 3 g on a block of 1.2 kg, at 620 Hz between modes of 247 and 908 Hz: a peak is lower than what the others leave there, so that a search from it leads
-/// to one of these, or lies between two frequencies of a coarse grid.
+/// Resonators of 20 g and 3 g on a block of 1.2 kg, at 620 Hz between modes of 247 and 908 Hz: a peak is
+/// lower than what the others leave there, so that a search from it leads to one of these, or lies between
+/// two frequencies of a coarse grid.
 #[test]
 fn the_mode_of_a_light_resonator_is_found_between_strong_ones() {
     for (mass, ratio) in [(0.02, 0.0005), (0.02, 0.003), (0.02, 0.01), (0.003, 0.003)] {

@@ -59,7 +59,8 @@ fn a_spurious_mode_of_the_recording_is_left_alone() {
     let with = with_a_spurious_mode(recorded);
     let pairing = Pairing::of(&with, model);
     assert_eq!(pairing.pairs, [(0, 0), (1, 1), (2, 2), (4, 3), (5, 4), (6, 5)]);
-    // ln of: any frequency in the band, any damping ratio of four decades, three complex residues of their own size.
+    // ln of: any frequency in the band, any damping ratio of four decades, three complex residues of their
+    // own size.
     let (low, high) = recorded.band;
     let expected = -((high / low).ln().ln() + (4.0 * 10f64.ln()).ln() + 3.0 * (TAU.ln() + 0.5));
     assert!((pairing.alone() - expected).abs() < 1e-9, "{} nats, expected {expected}", pairing.alone());
@@ -76,7 +77,8 @@ fn a_mode_without_a_partner_may_take_that_of_either_neighbour() {
     let [mut below, mut above] = [own; 2];
     (below[2], above[3]) = ((3, 2), (3, 3));
     assert_eq!(others, [below, above]);
-    // … and of a mode of the model that has none, which then costs what its neighbour would if the recording did not show it.
+    // … and of a mode of the model that has none, which then costs what its neighbour would if the recording
+    // did not show it.
     let mut fewer = recorded.clone();
     fewer.modes.remove(5);
     let pairing = Pairing::of(&fewer, model);
@@ -122,7 +124,8 @@ fn a_mode_that_the_analysis_left_out_is_found_by_the_model_that_expects_it() {
     let fixture = blocks("");
     let set = Recorded::of(&fixture, &four(), &lines(1500.0), noise(Some(1)));
     let recording = WeightedFrfs { frfs: &set.set, weights: &set.weights };
-    // The analyst picked the second mode only. The first is narrower than the lines are apart: by itself it might be a tone.
+    // The analyst picked the second mode only. The first is narrower than the lines are apart: by itself it
+    // might be a tone.
     let options = ModesOptions { pick: vec![907.8], ..ModesOptions::default() };
     let without = RecordedModes::of(recording, &options, |_| Expected::default()).unwrap();
     let expected = without.expected_by(&fixture);

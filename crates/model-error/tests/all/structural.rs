@@ -1,4 +1,5 @@
-//! What errors of a structure's model leave of recordings: noise of any structure, and more of what filters, and sensors that are moved, do.
+//! What errors of a structure's model leave of recordings: noise of any structure, and more of what filters,
+//! and sensors that are moved, do.
 
 use crate::common::*;
 use jointscope_fixture::Fixture;

@@ -1,4 +1,5 @@
-//! One place of the search: the best linear unknowns there, χ², its gradient, and what the place tells of poles and participations.
+//! One place of the search: the best linear unknowns there, χ², its gradient, and what the place tells of
+//! poles and participations.
 
 use jointscope_inference::NormalEquations;
 use jointscope_linalg::Cholesky;
@@ -202,7 +203,8 @@ impl Point {
         }
     }
 
-    /// A parameter that nothing is known of, such as the pole of a mode without an entry anywhere, stays where it is.
+    /// A parameter that nothing is known of, such as the pole of a mode without an entry anywhere, stays
+    /// where it is.
     fn hold_what_is_unknown(&mut self) {
         let parameters = self.normal.order;
         for index in 0..parameters {

@@ -68,7 +68,8 @@ fn shapes_and_modal_masses_come_out_as_they_are() {
                 true_value / largest
             );
         }
-        // Shapes are mass-normalised, so the mass of one whose largest entry is one is that entry's square's inverse.
+        // Shapes are mass-normalised, so the mass of one whose largest entry is one is that entry's square's
+        // inverse.
         let mass = mode.modal_mass.unwrap() * largest * largest;
         assert!((mass - 1.0).abs() < 0.02, "{mass}");
         assert!(mode.phase_collinearity > 0.999);
@@ -276,7 +277,8 @@ fn measured_modes_are_matched_by_frequency_and_shape_and_what_is_left_over_is_na
         products: FOUR.iter().map(|(o, i)| truth.shape[o - 1] * truth.shape[i - 1]).collect(),
     };
     let truth = three();
-    // The model has the second mode a little low, one that was not measured just beside it, and none like the third.
+    // The model has the second mode a little low, one that was not measured just beside it, and none like the
+    // third.
     let model = [expected(121.0, &truth[0]), expected(400.0, &truth[1]), expected(415.0, &truth[0])];
     let matches = match_modes(&analysis.modes, &model);
     let mut pairs: Vec<(usize, usize)> = matches.pairs.iter().map(|p| (p.measured, p.expected)).collect();

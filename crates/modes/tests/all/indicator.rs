@@ -6,8 +6,8 @@ use jointscope_spectra::{Channel, Dof, FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// m, natural frequencies (Hz) and damping ratios of two equal masses, held alike and tied to each other: they move together in the first mode and
-/// against each other in the second.
+/// m, natural frequencies (Hz) and damping ratios of two equal masses, held alike and tied to each other:
+/// they move together in the first mode and against each other in the second.
 const MASS: f64 = 2.5;
 const MODES: [(f64, f64); 2] = [(40.0, 0.01), (43.0, 0.02)];
 
@@ -15,7 +15,8 @@ fn lines() -> SpectralLines {
     SpectralLines::even(10.0, 0.5, 140).unwrap()
 }
 
-/// −ω²/(m(ω_r² − ω² + 2iζ_rω_rω)): what a mode contributes to the accelerances, whose matrix is ½[[h₁ + h₂, h₁ − h₂], [h₁ − h₂, h₁ + h₂]].
+/// −ω²/(m(ω_r² − ω² + 2iζ_rω_rω)): what a mode contributes to the accelerances, whose matrix is ½[[h₁ + h₂,
+/// h₁ − h₂], [h₁ − h₂, h₁ + h₂]].
 fn mode((hz, ratio): (f64, f64), omega: f64) -> Complex64 {
     let natural = TAU * hz;
     let stiffness = Complex64::new(natural * natural - omega * omega, 2.0 * ratio * natural * omega);

@@ -1,4 +1,5 @@
-//! Recordings of which neighbouring lines are merged: what is stated of their modes holds as it does of short ones.
+//! Recordings of which neighbouring lines are merged: what is stated of their modes holds as it does of short
+//! ones.
 
 use crate::common::*;
 use jointscope_modes::{ModalAnalysis, Mode, ModesOptions};
@@ -50,7 +51,8 @@ fn errors_are_as_large_as_stated_where_lines_are_merged() {
     }
 }
 
-/// FRFs of four records of a roving hammer, from each of which to the next every resonance moves by this share of its half-width.
+/// FRFs of four records of a roving hammer, from each of which to the next every resonance moves by this
+/// share of its half-width.
 fn drifting(count: usize, share: f64) -> FrfSet {
     let lines = lines(count);
     let record = |(number, frf): (usize, &(usize, usize))| {

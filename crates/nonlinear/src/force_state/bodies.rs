@@ -54,8 +54,8 @@ pub(super) fn inertia(fixture: &Fixture, index: usize) -> Option<Inertia> {
 /// Lines of a body's acceleration: of its centre of gravity, and angular.
 pub(super) type BodyMotion = [Vec<Complex64>; 2];
 
-/// One equation: Σ coefficient·unknown = lines. Unknown 2b is the acceleration of body b's centre of gravity, 2b + 1 the angular one times the
-/// length scale.
+/// One equation: Σ coefficient·unknown = lines. Unknown 2b is the acceleration of body b's centre of gravity,
+/// 2b + 1 the angular one times the length scale.
 struct Equation {
     coefficients: Vec<f64>,
     value: Vec<Complex64>,
@@ -140,7 +140,8 @@ fn readings(
     hit.responses().iter().filter_map(reading).collect()
 }
 
-/// Balance of force and, where every body rotates, of moment about x = 0, of a free assembly; divided by its mass and the length scale.
+/// Balance of force and, where every body rotates, of moment about x = 0, of a free assembly; divided by its
+/// mass and the length scale.
 fn momentum(fixture: &Fixture, hit: &Hit, lines: &Windowed, bodies: &[Inertia], scale: f64) -> Vec<Equation> {
     let mass: f64 = bodies.iter().map(|b| b.mass).sum();
     let load = lines.lines(hit.force());

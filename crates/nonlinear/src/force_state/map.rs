@@ -17,9 +17,9 @@ use std::ops::{Mul, Sub};
 
 /// What a joint bore during a hit against how far and how fast it was moved, as measured.
 ///
-/// The force is the inertia force of the bodies on one side of the joint less the hammer's, so neither the joint's stiffness nor its law enters
-/// it. The relative motion d = u_to − R·u_from is integrated from accelerations by 1/(iω)²; below `band.0`, where that drifts, it is
-/// the simulated fixture's.
+/// The force is the inertia force of the bodies on one side of the joint less the hammer's, so neither the
+/// joint's stiffness nor its law enters it. The relative motion d = u_to − R·u_from is integrated from
+/// accelerations by 1/(iω)²; below `band.0`, where that drifts, it is the simulated fixture's.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct ForceStateMap {
@@ -55,7 +55,8 @@ pub struct ForceState {
     pub motion: Vec<f64>,
     /// ḋ, m/s or rad/s.
     pub velocity: Vec<f64>,
-    /// What the joint bears on this component, N or N·m, without the part k₁₂ of the other component's motion.
+    /// What the joint bears on this component, N or N·m, without the part k₁₂ of the other component's
+    /// motion.
     pub force: Vec<f64>,
     /// The fixture's own stiffness of this component, N/m or N·m/rad.
     pub stiffness: f64,
@@ -106,11 +107,12 @@ impl ForceState {
 }
 
 impl ForceStateMap {
-    /// The map of `joint` under `hit`, with the mass properties, stiffness and laws of `fixture`; `band` is where d is taken from the sensors, Hz.
+    /// The map of `joint` under `hit`, with the mass properties, stiffness and laws of `fixture`; `band` is
+    /// where d is taken from the sensors, Hz.
     ///
     /// # Errors
-    /// A joint both of whose sides are held, deformable, or not followed by enough sensors; effects that make bodies bear more than
-    /// their inertia.
+    /// A joint both of whose sides are held, deformable, or not followed by enough sensors; effects that make
+    /// bodies bear more than their inertia.
     pub fn of(fixture: &Fixture, joint: &str, hit: &Hit, band: (f64, f64)) -> Result<Self, ForceStateError> {
         let unknown = || ForceStateError::UnknownJoint(joint.to_owned());
         let joint = fixture.joint(joint).ok_or_else(unknown)?;
@@ -200,8 +202,8 @@ fn rotates(fixture: &Fixture, point: usize) -> bool {
 
 type Side = (f64, Vec<(usize, Inertia)>);
 
-/// The side whose inertia gives the force: free, rigid, its motion measured, by its own sensors if possible. With it the sign by which what
-/// its bodies feel is the joint's force.
+/// The side whose inertia gives the force: free, rigid, its motion measured, by its own sensors if possible.
+/// With it the sign by which what its bodies feel is the joint's force.
 fn weighed(
     fixture: &Fixture,
     joint: &Joint,
@@ -267,7 +269,8 @@ fn ends_simulated(
     Ok((d, accelerated))
 }
 
-/// What the joint bears: the inertia force of the weighed bodies less the hammer's, at the abscissa of its far end, where R carries both components.
+/// What the joint bears: the inertia force of the weighed bodies less the hammer's, at the abscissa of its
+/// far end, where R carries both components.
 fn force(
     fixture: &Fixture,
     joint: &Joint,

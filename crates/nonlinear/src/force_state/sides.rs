@@ -34,8 +34,8 @@ pub(super) fn free(fixture: &Fixture, bodies: &[usize]) -> bool {
     fixture.supports().iter().all(|support| !bodies.contains(&fixture.support_place(support).0))
 }
 
-/// Refuses effects by which bodies bear more than their inertia, signals are not what sensors felt, or a joint's linear part is no
-/// stiffness.
+/// Refuses effects by which bodies bear more than their inertia, signals are not what sensors felt, or a
+/// joint's linear part is no stiffness.
 pub(super) fn check_effects(fixture: &Fixture) -> Result<(), ForceStateError> {
     use EffectKind::{AddedMass, PointOffset, StiffnessChange};
     let known =

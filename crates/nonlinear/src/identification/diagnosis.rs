@@ -52,18 +52,20 @@ pub struct NonlinearDiagnosis {
     pub homogeneity: Homogeneity,
     /// The laws found, the strongest first.
     pub findings: Vec<HitFinding>,
-    /// The file's fixture, the refitted one without laws, the repaired one; `None` where nothing changes with amplitude.
+    /// The file's fixture, the refitted one without laws, the repaired one; `None` where nothing changes with
+    /// amplitude.
     pub models: Option<[ModelFit; 3]>,
     /// The judgement on hits that no fit saw.
     pub held_out: Option<HeldOut>,
     /// How far the hits drive each joint.
     pub reach: Vec<Reach>,
-    /// Force–state maps under the strongest hit, of the joints with a law, or of all where no law was found; for each that cannot be drawn, why.
+    /// Force–state maps under the strongest hit, of the joints with a law, or of all where no law was found;
+    /// for each that cannot be drawn, why.
     pub maps: Vec<Result<ForceStateMap, ForceStateError>>,
     /// Band that was compared, Hz.
     pub band: (f64, f64),
-    /// Time after the blow, s, up to which the shortest of the hits was followed, where not all were to their end: later the motion depends on
-    /// more than the force is known to.
+    /// Time after the blow, s, up to which the shortest of the hits was followed, where not all were to their
+    /// end: later the motion depends on more than the force is known to.
     pub followed: Option<f64>,
 }
 
@@ -107,7 +109,8 @@ impl NonlinearDiagnosis {
 /// Band that is compared, and lowest and highest elastic frequency, Hz.
 type Bands = ((f64, f64), (f64, f64));
 
-/// Searches for effects on the hits that are not held out, one after the other, and judges them; `None` for a fixture without a finite motion.
+/// Searches for effects on the hits that are not held out, one after the other, and judges them; `None` for a
+/// fixture without a finite motion.
 fn judged(fixture: &Fixture, all: &[Record], (band, elastic): Bands, exact: bool) -> Option<Judged> {
     let held = held_out(all);
     let training = all.iter().enumerate().filter(|(i, _)| !held.contains(i)).map(|(_, r)| r);

@@ -20,12 +20,14 @@ pub(crate) struct Fit {
 }
 
 impl Fit {
-    /// From `start`, derivatives being taken `renewals` times at the most; `None` where the start has no finite motion.
+    /// From `start`, derivatives being taken `renewals` times at the most; `None` where the start has no
+    /// finite motion.
     pub(super) fn of(view: &View, start: &Hypothesis, renewals: usize) -> Option<Self> {
         Self::sloped(view, view, start, renewals)
     }
 
-    /// The same, with derivatives of a view of the same records that steps more coarsely: they need not be as exact as what they lead to.
+    /// The same, with derivatives of a view of the same records that steps more coarsely: they need not be as
+    /// exact as what they lead to.
     pub(super) fn sloped(view: &View, slopes: &View, start: &Hypothesis, renewals: usize) -> Option<Self> {
         let start = Iterate::at(view, start.clone())?;
         let fit = descend(&Problem { view, slopes }, start, None, &settings(renewals))?;
@@ -44,8 +46,8 @@ impl Fit {
         Fit { hypothesis, chi2, objective, information: derivatives.information }
     }
 
-    /// Covariance of the coordinates, the data's noise being `scale` times what was assumed; `None` where neither data nor priors determine
-    /// them.
+    /// Covariance of the coordinates, the data's noise being `scale` times what was assumed; `None` where
+    /// neither data nor priors determine them.
     pub(super) fn covariance(&self, scale: f64) -> Option<Covariance> {
         let information = self.information.iter().map(|e| e / scale).collect();
         equations(&self.hypothesis, information, vec![0.0; self.hypothesis.coordinates.len()]).covariance()
@@ -111,8 +113,8 @@ fn equations(hypothesis: &Hypothesis, information: Vec<f64>, right: Vec<f64>) ->
     equations
 }
 
-/// A simulation costs seconds, its derivatives many of them: they are taken anew as seldom as a twentieth of their first gain allows, and a
-/// tenth in χ² is no gain.
+/// A simulation costs seconds, its derivatives many of them: they are taken anew as seldom as a twentieth of
+/// their first gain allows, and a tenth in χ² is no gain.
 fn settings(renewals: usize) -> Settings {
     Settings {
         steps: MOST_STEPS,

@@ -1,8 +1,9 @@
 //! The test of homogeneity: do FRFs change with the strength of the hits beyond noise?
 //!
-//! No model of the structure enters. Force and response are multiplied by e^{−at}, which moves the spectra of both to s = a + iω: for a linear
-//! structure Y = H(s)·F holds exactly, whatever still rings at the end of the record. Per line one H for all hits at
-//! a point is compared with one H a level; what the levels gain is measured by the scatter of hits alike.
+//! No model of the structure enters. Force and response are multiplied by e^{−at}, which moves the spectra of
+//! both to s = a + iω: for a linear structure Y = H(s)·F holds exactly, whatever still rings at the end of
+//! the record. Per line one H for all hits at a point is compared with one H a level; what the levels gain is
+//! measured by the scatter of hits alike.
 
 use super::records::{Record, struck_channels};
 use crate::distribution::{chi_squared_tail, f_tail};

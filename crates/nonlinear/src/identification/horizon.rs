@@ -1,8 +1,9 @@
-//! How far a motion can be followed: until what the force's noise, the length of steps, or what is not known of the law does to it has grown
-//! beyond the responses' own noise.
+//! How far a motion can be followed: until what the force's noise, the length of steps, or what is not known
+//! of the law does to it has grown beyond the responses' own noise.
 //!
-//! A joint that knocks or hardens strongly can make motions that depend on more digits than a force is measured with, or steps resolve. What comes later in
-//! such a record is no evidence for or against any model, and a fit to it is caught in false minima.
+//! A joint that knocks or hardens strongly can make motions that depend on more digits than a force is
+//! measured with, or steps resolve. What comes later in such a record is no evidence for or against any
+//! model, and a fit to it is caught in false minima.
 
 use super::fit::Fit;
 use super::hypothesis::Hypothesis;
@@ -10,8 +11,8 @@ use super::misfit::{Focus, View};
 use super::records::Record;
 use crate::settings::horizon::{BLOCK, CERTAIN, DEVIATIONS, DISTURBANCES, LINEAR_DEPARTURES, TOLERATED};
 
-/// Samples of each record up to which `fit` can follow it, not below `least` seconds after its blow; no limit where motions stay
-/// together to the end.
+/// Samples of each record up to which `fit` can follow it, not below `least` seconds after its blow; no limit
+/// where motions stay together to the end.
 pub(crate) fn horizons(records: &[&Record], focus: &Focus, fit: &Fit, least: f64) -> Vec<usize> {
     let (unlimited, hypothesis) = (vec![usize::MAX; records.len()], &fit.hypothesis);
     if hypothesis.effects().is_empty() {

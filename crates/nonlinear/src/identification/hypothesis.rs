@@ -1,4 +1,5 @@
-//! What a fit may move: quantities of the fixture within their tolerances, and the parameters of amplitude-dependent effects.
+//! What a fit may move: quantities of the fixture within their tolerances, and the parameters of
+//! amplitude-dependent effects.
 
 use crate::RestoringLaw;
 use crate::settings::fit::{LONGEST, LONGEST_OF_EFFECT};
@@ -9,7 +10,8 @@ use jointscope_inference::{Parameter, Transform};
 use jointscope_tolerances::{Tolerance, moved};
 use std::sync::Arc;
 
-/// A fixture with quantities and effects to be fitted, at coordinates in units of which one is a typical step.
+/// A fixture with quantities and effects to be fitted, at coordinates in units of which one is a typical
+/// step.
 #[derive(Debug, Clone)]
 pub(crate) struct Hypothesis {
     fixture: Arc<Fixture>,
@@ -131,7 +133,8 @@ impl Hypothesis {
     }
 }
 
-/// How each parameter of an amplitude-dependent effect moves: by its logarithm, or in parts of where it started.
+/// How each parameter of an amplitude-dependent effect moves: by its logarithm, or in parts of where it
+/// started.
 fn transforms(effect: &Effect) -> Vec<Transform> {
     let positive = RestoringLaw::of(effect).is_none_or(|law| law.is_positive());
     let transform = |quantity: &Quantity| match positive {
@@ -141,7 +144,8 @@ fn transforms(effect: &Effect) -> Vec<Transform> {
     effect.parameters.iter().map(transform).collect()
 }
 
-/// Whether a quantity enters the model: of the points, those at which something is joined, held, struck or read.
+/// Whether a quantity enters the model: of the points, those at which something is joined, held, struck or
+/// read.
 fn is_used(fixture: &Fixture, quantity: &NamedQuantity, channels: &[String]) -> bool {
     let QuantityOwner::Point(point) = quantity.owner else { return true };
     let held = |place: &SupportPlace| matches!(place, SupportPlace::Point(p) if *p == point);

@@ -1,4 +1,5 @@
-//! What the laws found come to: quantities from all hits, what each law is known to, and how hits fare that no fit saw.
+//! What the laws found come to: quantities from all hits, what each law is known to, and how hits fare that
+//! no fit saw.
 
 use super::fit::Fit;
 use super::horizon::horizons;
@@ -75,7 +76,8 @@ pub(super) struct Judged {
 }
 
 impl Judgement<'_> {
-    /// Of the fixture as stated and refitted without laws, and of the best fit with laws; `None` for models without a finite motion.
+    /// Of the fixture as stated and refitted without laws, and of the best fit with laws; `None` for models
+    /// without a finite motion.
     pub(super) fn of(
         &self,
         [nominal, refitted]: [&Hypothesis; 2],
@@ -89,8 +91,9 @@ impl Judgement<'_> {
             true => None,
             false => Some(self.held_out(&focus, &ends, [refitted, &best.hypothesis])?),
         };
-        // Names were chosen without the hits held out; quantities are then those that all hits give.
-        // They are read from steps finer than the search needs: what steps leave of bias must not exceed what noise leaves of doubt.
+        // Names were chosen without the hits held out; quantities are then those that all hits give. They are
+        // read from steps finer than the search needs: what steps leave of bias must not exceed what noise
+        // leaves of doubt.
         let fine = Focus { within: FINER * focus.within, ..focus };
         let (everything, slopes) = (View::new(&records, &fine, &ends), View::new(&records, &focus, &ends));
         let degrees = everything.degrees();
@@ -198,8 +201,9 @@ impl Judgement<'_> {
     }
 }
 
-/// Probability of the best fit's effect, and the others with theirs: by how much worse they fit, noise being as large as the best fit's residuals.
-/// The more the best leaves unexplained, the more is left for something not listed.
+/// Probability of the best fit's effect, and the others with theirs: by how much worse they fit, noise being
+/// as large as the best fit's residuals. The more the best leaves unexplained, the more is left for something
+/// not listed.
 fn probabilities(fits: &[Fit], chi2_per_dof: f64) -> (f64, Vec<(Effect, f64)>) {
     let Some(best) = fits.first() else { return (0.0, Vec::new()) };
     let scale = chi2_per_dof.max(1.0);

@@ -88,8 +88,8 @@ impl<'a> View<'a> {
         self.setups.iter().map(stepper).collect()
     }
 
-    /// What every response of every record reads in the model, under the recorded force and `disturbance` times its noise; nothing for a
-    /// hypothesis without a finite motion.
+    /// What every response of every record reads in the model, under the recorded force and `disturbance`
+    /// times its noise; nothing for a hypothesis without a finite motion.
     pub(crate) fn histories(&self, hypothesis: &Hypothesis, disturbance: f64) -> Option<Vec<Vec<Vec<f64>>>> {
         let steppers = self.steppers(hypothesis)?;
         let history = |trace: &Trace| {
@@ -223,7 +223,8 @@ impl<'a> Trace<'a> {
         self.windowed.window.len()
     }
 
-    /// Noise of a response and, through the FRF that the hit itself shows, of the force; and what no model is exact to.
+    /// Noise of a response and, through the FRF that the hit itself shows, of the force; and what no model is
+    /// exact to.
     fn weigh(&mut self) {
         let energy = self.windowed.power();
         let force = self.spectrum(self.record.hit.force());
@@ -270,7 +271,8 @@ fn fading(sample: usize, onset: usize, end: usize) -> f64 {
     0.5 - 0.5 * (std::f64::consts::PI * left).cos()
 }
 
-/// White noise of unit variance, the same every time: it asks what the noise of a force may do, and is no draw of it.
+/// White noise of unit variance, the same every time: it asks what the noise of a force may do, and is no
+/// draw of it.
 fn white(samples: usize) -> impl Iterator<Item = f64> {
     let mut uniform = Uniform::from_state(0x9E37_79B9_7F4A_7C15);
     // The sum of twelve has a variance of one.

@@ -1,10 +1,13 @@
-//! What a joint must have borne beyond the linear fixture, reconstructed from recorded responses: where the search for its law begins.
+//! What a joint must have borne beyond the linear fixture, reconstructed from recorded responses: where the
+//! search for its law begins.
 //!
-//! Of a linear structure with one amplitude-dependent force pair g at a joint, Y = Y₀ − h·G holds line by line, Y₀ being what the structure reads
-//! under the recorded force and h what it reads under a force pair of 1. So G follows from responses by weighted least squares, and with it
-//! the joint's relative motion, D = D₀ − h_d·G, without a simulation. A law whose shape is known (where it slips, where it touches) is
-//! then linear in its strength, and shapes are compared by what they leave of Y₀ − Y. Stiffness, dashpot and mass at the joint that the
-//! fixture states a little wrongly are columns beside it. All signals are multiplied by e^{−at}, under which the above stays exact.
+//! Of a linear structure with one amplitude-dependent force pair g at a joint, Y = Y₀ − h·G holds line by
+//! line, Y₀ being what the structure reads under the recorded force and h what it reads under a force pair
+//! of 1. So G follows from responses by weighted least squares, and with it the joint's relative motion,
+//! D = D₀ − h_d·G, without a simulation. A law whose shape is known (where it slips, where it touches) is
+//! then linear in its strength, and shapes are compared by what they leave of Y₀ − Y. Stiffness, dashpot and
+//! mass at the joint that the fixture states a little wrongly are columns beside it. All signals are
+//! multiplied by e^{−at}, under which the above stays exact.
 
 use super::locations::JointLocation;
 use super::misfit::Focus;
@@ -55,7 +58,8 @@ pub(super) fn seen(
     each(records, |record| Seen::of(&structures, record, locations, focus)).into_iter().collect()
 }
 
-/// Weights of lines, recorded and simulated, by noise and by what a model gets wrong at best; and the weighted difference of the two.
+/// Weights of lines, recorded and simulated, by noise and by what a model gets wrong at best; and the
+/// weighted difference of the two.
 fn weighted_difference(
     [recorded, simulated]: &[Vec<Complex64>; 2],
     noise: f64,
@@ -158,7 +162,8 @@ impl Seen {
         &self.lines.window
     }
 
-    /// Every value compared at a location, in the order of responses and lines: line in the band, h·weight, target.
+    /// Every value compared at a location, in the order of responses and lines: line in the band, h·weight,
+    /// target.
     pub(super) fn each_value(&self, location: usize, mut visit: impl FnMut(usize, Complex64, Complex64)) {
         for (transfer, target) in self.locations[location].transfer.iter().zip(&self.target) {
             transfer.iter().zip(target).enumerate().for_each(|(k, (h, target))| visit(k, *h, *target));

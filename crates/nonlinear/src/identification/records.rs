@@ -102,7 +102,8 @@ fn check(fixture: &Fixture, hit: &Hit) -> Result<(), DiagnoseError> {
         .map_err(|error| DiagnoseError::Channel(number, error))
 }
 
-/// Numbers the levels of the hits at each struck point; answers with the ratio of strongest to weakest at the point where it is largest.
+/// Numbers the levels of the hits at each struck point; answers with the ratio of strongest to weakest at the
+/// point where it is largest.
 fn set_levels(records: &mut [Record]) -> f64 {
     let mut widest: f64 = 1.0;
     for channel in struck_channels(records) {
@@ -132,8 +133,8 @@ pub(crate) fn struck_channels(records: &[Record]) -> BTreeSet<Channel> {
     records.iter().map(|r| r.struck().clone()).collect()
 }
 
-/// Indices of the hits to hold out: the last of each group of two or more alike; every third where there are no such groups but six or more
-/// hits.
+/// Indices of the hits to hold out: the last of each group of two or more alike; every third where there are
+/// no such groups but six or more hits.
 pub(crate) fn held_out(records: &[Record]) -> Vec<usize> {
     let last = |i: &usize| {
         let (before, after) = (&records[..*i], &records[i + 1..]);

@@ -89,7 +89,8 @@ impl<'a> Search<'a> {
         best(fits.into_iter().flatten())
     }
 
-    /// The kinds of effect beyond those of `base` that explain the most of the reconstructed forces, the best first.
+    /// The kinds of effect beyond those of `base` that explain the most of the reconstructed forces, the best
+    /// first.
     fn suggested(&self, fixture: &Fixture, base: &Hypothesis) -> Vec<Suggestion> {
         let locations = locations(fixture, &self.records, BEYOND_BAND * self.band.1);
         let mut kinds: Vec<Suggestion> = Vec::new();
@@ -111,7 +112,8 @@ impl<'a> Search<'a> {
         kinds
     }
 
-    /// Whether the law that was added last to a hypothesis never acts: a gap that no hit closes, friction that none makes slip. What gains by it are the quantities beside it.
+    /// Whether the law that was added last to a hypothesis never acts: a gap that no hit closes, friction
+    /// that none makes slip. What gains by it are the quantities beside it.
     pub(super) fn is_idle(&self, hypothesis: &Hypothesis) -> bool {
         let Some((effect, model)) = hypothesis.effects().pop().zip(hypothesis.to_fixture().ok()) else {
             return false;
@@ -122,7 +124,8 @@ impl<'a> Search<'a> {
         own.next().is_some_and(|location| location.reach < from)
     }
 
-    /// Of `fits` those whose last law acts; and the best without it of the others, where a law that never acts may have led the quantities beside it out of a false minimum.
+    /// Of `fits` those whose last law acts; and the best without it of the others, where a law that never
+    /// acts may have led the quantities beside it out of a false minimum.
     pub(super) fn acting(&self, view: &View, fits: Vec<Fit>) -> (Vec<Fit>, Option<Fit>) {
         let (idle, acting): (Vec<Fit>, Vec<Fit>) =
             fits.into_iter().partition(|fit| self.is_idle(&fit.hypothesis));
@@ -130,7 +133,8 @@ impl<'a> Search<'a> {
         (acting, best(idle.iter().filter_map(freed)))
     }
 
-    /// Fits with one more effect beside those of `base`, the best first, and how much of the records decided between them.
+    /// Fits with one more effect beside those of `base`, the best first, and how much of the records decided
+    /// between them.
     pub(super) fn hypotheses(&self, fixture: &Fixture, base: &Hypothesis) -> (Vec<Fit>, Span) {
         let kinds = self.suggested(fixture, base);
         let short = self.window(SHORT, &[]);
@@ -154,7 +158,8 @@ impl<'a> Search<'a> {
         shorter.truncate(FINALISTS);
         let mut span = Span { periods: None, ends: ends(&self.records, &shorter) };
         let mut fits = refitted(&shorter, &self.view(&span));
-        // What comes late must not contradict what came before: a motion that cannot be followed to its end draws the fit away from the truth.
+        // What comes late must not contradict what came before: a motion that cannot be followed to its end
+        // draws the fit away from the truth.
         if let (Some(before), Some(now)) = (shorter.first(), fits.first())
             && contradicts(long.objective(&now.hypothesis), before.objective)
         {
@@ -165,8 +170,8 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Whether an objective, of a hypothesis that more of the records led to, is worse than the one before by more than chance and small errors of
-/// the model make.
+/// Whether an objective, of a hypothesis that more of the records led to, is worse than the one before by
+/// more than chance and small errors of the model make.
 pub(crate) fn contradicts(now: Option<f64>, before: f64) -> bool {
     now.is_none_or(|now| now > before * (1.0 + CONTRADICTION_SHARE) + CONTRADICTION)
 }

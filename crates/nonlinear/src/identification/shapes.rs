@@ -1,4 +1,5 @@
-//! Laws whose strength is linear, compared by what they leave of a reconstructed force: suggestions of where to begin a fit.
+//! Laws whose strength is linear, compared by what they leave of a reconstructed force: suggestions of where
+//! to begin a fit.
 
 use super::locations::JointLocation;
 use super::misfit::Focus;
@@ -16,7 +17,8 @@ use num_complex::Complex64;
 pub(crate) struct Suggestion {
     /// Of one kind, the one that leaves least first.
     pub effects: Vec<Effect>,
-    /// Share of the weighted misfit that the first of them explains beyond what a linear change of the joint does.
+    /// Share of the weighted misfit that the first of them explains beyond what a linear change of the joint
+    /// does.
     pub share: f64,
 }
 
@@ -42,7 +44,8 @@ pub(super) fn is_like(a: &Effect, b: &Effect, by: f64) -> bool {
     a.is_named_as(b) && (0..a.parameters.len()).all(|i| close(a.value(i), b.value(i)))
 }
 
-/// Columns that stand for what the fixture states a little wrongly: stiffness, dashpot and mass across the joint.
+/// Columns that stand for what the fixture states a little wrongly: stiffness, dashpot and mass across the
+/// joint.
 const LINEAR: usize = 3;
 
 /// Sums of least squares: linear columns, then the shape.
@@ -55,7 +58,8 @@ struct Sums {
 
 /// A law of strength 1 laid against what was recorded.
 struct Tried {
-    /// Its strength beside a linear change of the joint, and the share of what such a change leaves that it takes.
+    /// Its strength beside a linear change of the joint, and the share of what such a change leaves that it
+    /// takes.
     beside: (f64, f64),
     /// Its strength without any such change, and the share of all that it takes.
     alone: (f64, f64),
@@ -72,8 +76,8 @@ struct Regression<'a> {
     taken: f64,
 }
 
-/// For every location, suggestions for each kind of law that helps there. `model` is the fixture as far as it is known, laws found already
-/// included.
+/// For every location, suggestions for each kind of law that helps there. `model` is the fixture as far as it
+/// is known, laws found already included.
 pub(crate) fn suggestions(
     model: &Fixture,
     records: &[&Record],

@@ -5,8 +5,9 @@ use crate::settings::level_model::CONTACT_STEPS;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// First harmonic of a law's force over the amplitude of d = a·cos ωt: stiffness, and i times what it loses. `yields` is the static relative
-/// displacement of the joint by a force of 1 across it: one-sided contact pushes the mean of d away from the stop.
+/// First harmonic of a law's force over the amplitude of d = a·cos ωt: stiffness, and i times what it loses.
+/// `yields` is the static relative displacement of the joint by a force of 1 across it: one-sided contact
+/// pushes the mean of d away from the stop.
 pub(crate) fn equivalent(law: &RestoringLaw, amplitude: f64, yields: f64) -> Complex64 {
     match *law {
         RestoringLaw::Cubic { stiffness3 } => (0.75 * stiffness3 * amplitude * amplitude).into(),
@@ -27,7 +28,8 @@ pub(crate) fn equivalent(law: &RestoringLaw, amplitude: f64, yields: f64) -> Com
     }
 }
 
-/// Half the angle of a period during which the stop is touched, the mean of d being that at which the structure balances the stop's mean force.
+/// Half the angle of a period during which the stop is touched, the mean of d being that at which the
+/// structure balances the stop's mean force.
 fn contact(clearance: f64, stiffness: f64, amplitude: f64, yields: f64) -> f64 {
     let angle_at = |mean: f64| ((clearance - mean) / amplitude).clamp(-1.0, 1.0).acos();
     if amplitude <= clearance {

@@ -70,8 +70,8 @@ impl SteppedDiagnosis {
         }
     }
 
-    /// Two laws at one joint that would explain the change with level where no more than one is named: with as many parameters they follow so few
-    /// levels whatever the truth is.
+    /// Two laws at one joint that would explain the change with level where no more than one is named: with
+    /// as many parameters they follow so few levels whatever the truth is.
     pub fn unproved_pair(&self) -> Option<&TriedForm> {
         let two = self.tried.iter().find(|tried| tried.form.contains('+') && tried.share >= EXPLAINED_BY_TWO);
         two.filter(|_| self.findings.len() <= 1)

@@ -37,7 +37,8 @@ pub struct LevelResult {
     /// Loss stiffness (imaginary part) beyond the fixture's, and its standard deviation.
     #[serde(rename = "loss_stiffness_beyond_the_fixture", serialize_with = "jointscope_findings::with_std")]
     pub loss: (f64, Option<f64>),
-    /// Relative error of the FRFs: fixture as stated, refitted, repaired, and with a complex stiffness of its own.
+    /// Relative error of the FRFs: fixture as stated, refitted, repaired, and with a complex stiffness of its
+    /// own.
     #[serde(serialize_with = "by_model")]
     pub nrmse: [f64; 4],
     /// Whether the laws found hold at this level.
@@ -71,9 +72,11 @@ pub struct SteppedDiagnosis {
     pub held_out: Option<HeldOut>,
     /// Lines in use, Hz.
     pub band: (f64, f64),
-    /// Root-mean-square relative errors over the levels: as stated, refitted, repaired, each level with a stiffness of its own.
+    /// Root-mean-square relative errors over the levels: as stated, refitted, repaired, each level with a
+    /// stiffness of its own.
     pub nrmse: [f64; 4],
-    /// χ² per degree of freedom over all levels: as stated, refitted, repaired; `None` where it is not finite.
+    /// χ² per degree of freedom over all levels: as stated, refitted, repaired; `None` where it is not
+    /// finite.
     pub chi2_per_dof: [Option<f64>; 3],
     /// The fixture with the joint's stiffness refitted, and the same with the laws found.
     pub fixtures: [Fixture; 2],
@@ -82,7 +85,8 @@ pub struct SteppedDiagnosis {
 }
 
 impl SteppedDiagnosis {
-    /// Diagnoses FRFs at two or more levels against `fixture`, on the lines about their strongest resonance within the band.
+    /// Diagnoses FRFs at two or more levels against `fixture`, on the lines about their strongest resonance
+    /// within the band.
     ///
     /// # Errors
     /// See [`SteppedError`].
@@ -236,8 +240,9 @@ fn about_the_resonance(
     Ok((used, ends))
 }
 
-/// Probability that one complex stiffness for all levels leaves as much more than one a level by chance, and the ratio of variances. Values are weighed
-/// by their own noise, of which only the variation over lines and FRFs counts: its size is that of what the levels' own stiffnesses leave.
+/// Probability that one complex stiffness for all levels leaves as much more than one a level by chance, and
+/// the ratio of variances. Values are weighed by their own noise, of which only the variation over lines and
+/// FRFs counts: its size is that of what the levels' own stiffnesses leave.
 fn changed(problem: &Problem, linear: &Fitted) -> (f64, f64) {
     let by_noise = problem.by_noise();
     let problem = by_noise.as_ref().unwrap_or(problem);
@@ -250,7 +255,8 @@ fn changed(problem: &Problem, linear: &Fitted) -> (f64, f64) {
     (f_tail(ratio, more, left), ratio)
 }
 
-/// The fixture with the base stiffness and loss of a change in its joint's file entries; and what has no entry.
+/// The fixture with the base stiffness and loss of a change in its joint's file entries; and what has no
+/// entry.
 fn placed(fixture: &Fixture, problem: &Problem, change: &Change, omega: f64) -> (Fixture, Vec<String>) {
     let mut refitted = fixture.clone();
     let (joint, dof) = (&problem.joint, problem.dof);

@@ -23,8 +23,8 @@ pub(crate) fn minimum(residual: Residual, start: &[f64], scale: &[f64]) -> Optio
     descend(&problem, problem.at(start.to_vec())?, None, &settings).map(|fit| fit.point)
 }
 
-/// Standard deviations of the parameters at `x` where the residuals' variance is what they leave a degree of freedom; `None` where a combination
-/// is free.
+/// Standard deviations of the parameters at `x` where the residuals' variance is what they leave a degree of
+/// freedom; `None` where a combination is free.
 pub(crate) fn deviations(residual: Residual, x: &[f64], scale: &[f64], degrees: usize) -> Option<Vec<f64>> {
     let problem = Problem { residual, scale };
     let point = problem.at(x.to_vec())?;

@@ -10,7 +10,8 @@ use jointscope_spectra::Dof;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Accelerances on one line, a complex stiffness δ across the joint still to be added: H = G_oi − G_od δ G_di/(1 + δ G_dd).
+/// Accelerances on one line, a complex stiffness δ across the joint still to be added: H = G_oi − G_od δ
+/// G_di/(1 + δ G_dd).
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LineModel {
     /// G_oi and G_od of every FRF, as accelerances.
@@ -122,7 +123,8 @@ fn location(
         let mut receptances = model.receptances(&outputs, &inputs);
         let mut values = vec![Complex64::ZERO; receptances.count()];
         let mut read = |hz: f64| {
-            // On an undamped resonance of the fixture only the sum with δ is finite: it is read as close by as numbers allow.
+            // On an undamped resonance of the fixture only the sum with δ is finite: it is read as close by
+            // as numbers allow.
             let finite = [hz, hz * (1.0 + BESIDE)]
                 .iter()
                 .any(|hz| receptances.at(Complex64::new(0.0, TAU * hz), &mut values));

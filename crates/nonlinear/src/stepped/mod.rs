@@ -1,4 +1,5 @@
-//! Stepped-sine FRFs at several levels: frequency and damping by level, and the joint's law against the amplitude of its motion.
+//! Stepped-sine FRFs at several levels: frequency and damping by level, and the joint's law against the
+//! amplitude of its motion.
 
 mod balance;
 pub(crate) mod course;

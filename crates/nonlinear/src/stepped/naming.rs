@@ -94,7 +94,8 @@ pub(crate) struct Named {
     pub fit: Fitted,
     pub count: usize,
     pub share: f64,
-    /// That component up to the last level over which the law holds, and all that was tried there and elsewhere.
+    /// That component up to the last level over which the law holds, and all that was tried there and
+    /// elsewhere.
     problem: Problem,
     linear: Fitted,
     rivals: Vec<Rival>,
@@ -186,8 +187,8 @@ impl Named {
         self.fit.change.laws.iter().enumerate().map(finding).collect()
     }
 
-    /// Standard deviations of the parameters: from the scatter of lines, or of fits that leave one level out, whichever is larger; with what the
-    /// fixture's tolerances add.
+    /// Standard deviations of the parameters: from the scatter of lines, or of fits that leave one level out,
+    /// whichever is larger; with what the fixture's tolerances add.
     fn deviations(&self, (fixture, exact): (&Fixture, bool)) -> Vec<Option<f64>> {
         let by_lines = self.problem.deviations(&self.fit.change);
         let without: Vec<Vec<f64>> =

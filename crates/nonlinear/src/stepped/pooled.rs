@@ -6,11 +6,13 @@ use jointscope_frf::noise::known;
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 
-/// The FRFs of levels between which nothing changes, as one set: on every line that a level has, the mean of the levels that have it, weighted by one
-/// over their variances, and the variance of that mean. FRFs that some level lacks are left out; `None` where none is left, or the levels' forms
-/// cannot be turned into one another.
+/// The FRFs of levels between which nothing changes, as one set: on every line that a level has, the mean of
+/// the levels that have it, weighted by one over their variances, and the variance of that mean. FRFs that
+/// some level lacks are left out; `None` where none is left, or the levels' forms cannot be turned into one
+/// another.
 ///
-/// Variances come from coherence and averages where a level has them, from its scatter over the lines elsewhere.
+/// Variances come from coherence and averages where a level has them, from its scatter over the lines
+/// elsewhere.
 pub fn pooled(levels: &[SteppedLevel]) -> Option<FrfSet> {
     let form = levels.first()?.frfs.form();
     let sets: Vec<FrfSet> =

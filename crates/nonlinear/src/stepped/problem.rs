@@ -39,7 +39,8 @@ pub(crate) struct Level {
     motions: Vec<f64>,
 }
 
-/// What is added across the joint: gain of the fixture's FRFs, base stiffness and loss beyond the fixture's, laws.
+/// What is added across the joint: gain of the fixture's FRFs, base stiffness and loss beyond the fixture's,
+/// laws.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Change {
     pub log_gain: f64,
@@ -51,7 +52,8 @@ pub(crate) struct Change {
 pub(crate) const BASE: usize = 3;
 
 impl Change {
-    /// What a fit moves: gain, base stiffness and loss, then the laws' parameters, by their logarithms where they are positive.
+    /// What a fit moves: gain, base stiffness and loss, then the laws' parameters, by their logarithms where
+    /// they are positive.
     pub(super) fn parameters(&self) -> Vec<f64> {
         let of_law = |law: &RestoringLaw| {
             let positive = law.is_positive();
@@ -116,8 +118,8 @@ impl Level {
             .fold(0, |top, line| if values[line].norm() > values[top].norm() { line } else { top })
     }
 
-    /// Amplitude of d on a line from the amplitude measured at the watched response, and δ there; `delta` is δ by d, `near` where d is
-    /// looked for.
+    /// Amplitude of d on a line from the amplitude measured at the watched response, and δ there; `delta` is
+    /// δ by d, `near` where d is looked for.
     fn motion_on(&self, line: usize, near: f64, delta: &dyn Fn(f64) -> Complex64) -> (f64, Complex64) {
         let watched = self.measured.watched();
         let response = match self.measured.held {
@@ -125,7 +127,8 @@ impl Level {
             Held::Force(amplitude) => amplitude * self.measured.frfs.values(watched)[line].norm(),
         };
         let (mut motion, mut found) = (near, delta(near));
-        // ln of the motion before and of what δ there made of it: from the second turn on the secant through the last two.
+        // ln of the motion before and of what δ there made of it: from the second turn on the secant through
+        // the last two.
         let mut last: Option<(f64, f64)> = None;
         for _ in 0..TURNS {
             let made = response * self.lines[line].motion_per_response(watched, found);
@@ -215,7 +218,8 @@ impl Problem {
         Problem { joint, dof, yields, levels, log_gain, floor, frozen }.with_own_deltas()
     }
 
-    /// δ of each level, the gain common to all, and the motions that follow: each level has a gain of its own first, later ones share their mean.
+    /// δ of each level, the gain common to all, and the motions that follow: each level has a gain of its own
+    /// first, later ones share their mean.
     fn with_own_deltas(mut self) -> Option<Self> {
         let mut gains = 0.0;
         for level in &mut self.levels {
@@ -281,7 +285,8 @@ impl Problem {
         less
     }
 
-    /// The problem with every value weighed by its own deviation, and the levels' δ that follow; `None` where values carry none.
+    /// The problem with every value weighed by its own deviation, and the levels' δ that follow; `None` where
+    /// values carry none.
     pub(super) fn by_noise(&self) -> Option<Self> {
         let mut other = self.clone();
         for level in &mut other.levels {
@@ -290,7 +295,8 @@ impl Problem {
         other.with_one_gain()
     }
 
-    /// A change without laws: base stiffness and gain that suit the levels' own δ less what `laws` make of them, with these laws.
+    /// A change without laws: base stiffness and gain that suit the levels' own δ less what `laws` make of
+    /// them, with these laws.
     pub(super) fn begun(&self, laws: Vec<RestoringLaw>) -> Change {
         let mut change = Change { log_gain: self.log_gain, laws, ..Change::default() };
         let rest = |level: &Level| level.delta - change.delta(level.motion(), self.yields);
@@ -339,7 +345,8 @@ impl Problem {
         self.mean(|level| self.error(level, change))
     }
 
-    /// χ² per degree of freedom under a change, of a problem that is weighed by its noise; `None` where it is not finite.
+    /// χ² per degree of freedom under a change, of a problem that is weighed by its noise; `None` where it is
+    /// not finite.
     pub(super) fn chi2_per_dof(&self, change: &Change, fitted: usize) -> Option<f64> {
         let squares = self.levels.iter().map(|level| self.error(level, change).powi(2));
         // The noise of a complex value has half of its variance in each part.

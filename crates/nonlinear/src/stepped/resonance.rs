@@ -21,8 +21,9 @@ pub struct Resonance {
     pub nrmse: f64,
 }
 
-/// Fits −ω²A/(ω₀² − ω² + 2iζω₀ω) + R to every FRF of the level, ω₀ and ζ shared, A and R complex: what other modes add is a constant on the few
-/// lines about one resonance. Standard deviations come from what the fit leaves.
+/// Fits −ω²A/(ω₀² − ω² + 2iζω₀ω) + R to every FRF of the level, ω₀ and ζ shared, A and R complex: what other
+/// modes add is a constant on the few lines about one resonance. Standard deviations come from what the fit
+/// leaves.
 pub(crate) fn resonance(level: &SteppedLevel) -> Option<Resonance> {
     let lines = level.frfs.lines();
     let omegas: Vec<f64> = lines.omegas().collect();

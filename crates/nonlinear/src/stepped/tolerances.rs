@@ -5,9 +5,10 @@ use super::problem::{Change, Problem};
 use jointscope_fixture::{Fixture, NamedQuantity};
 use jointscope_inference::each;
 
-/// Variances of the change's parameters from the fixture's quantities, each moved by its standard deviation and the change fitted again. Base
-/// stiffness, base loss and gain are free in every fit, so that what acts as these costs nothing. `exact` takes bare numbers as exact. A quantity whose
-/// change cannot be followed adds nothing.
+/// Variances of the change's parameters from the fixture's quantities, each moved by its standard deviation
+/// and the change fitted again. Base stiffness, base loss and gain are free in every fit, so that what acts
+/// as these costs nothing. `exact` takes bare numbers as exact. A quantity whose change cannot be followed
+/// adds nothing.
 pub(crate) fn tolerance_variances(
     fixture: &Fixture,
     exact: bool,

@@ -1,8 +1,10 @@
 //! Steps of a linear system with a few amplitude-dependent forces in it.
 //!
-//! Between two instants the force is a straight line, element forces are parabolas through their last three values, and the linear part is
-//! propagated exactly, x⁺ = Φx + β₀F + β₁F⁺ − Σ(ε₋g⁻ + ε₀g + ε₁g⁺); the new g⁺ follows from its law in closed form, for it moves its own d⁺ by a known amount. A step
-//! in which an element changes its branch (contact, slip) is halved until the event is confined to a short one; across an event and after it, element forces are straight lines.
+//! Between two instants the force is a straight line, element forces are parabolas through their last three
+//! values, and the linear part is propagated exactly, x⁺ = Φx + β₀F + β₁F⁺ − Σ(ε₋g⁻ + ε₀g + ε₁g⁺); the new g⁺
+//! follows from its law in closed form, for it moves its own d⁺ by a known amount. A step in which an element
+//! changes its branch (contact, slip) is halved until the event is confined to a short one; across an event
+//! and after it, element forces are straight lines.
 
 use super::law::{Memory, RestoringLaw};
 use jointscope_linalg::matrix_exponential;
@@ -56,7 +58,8 @@ pub(crate) const MOST_ELEMENTS: usize = 4;
 pub(crate) struct Stepper(Box<dyn Kernel>);
 
 impl Stepper {
-    /// `None` for more states or elements than there is room for, or a system whose exponential is not finite.
+    /// `None` for more states or elements than there is room for, or a system whose exponential is not
+    /// finite.
     pub(crate) fn new(system: &System, steps: Steps) -> Option<Self> {
         macro_rules! of_size {
             ($($n:literal),*) => {
@@ -72,8 +75,8 @@ impl Stepper {
         Some(Stepper(of_size!(2, 4, 6, 8, 12, 16, 24, 32, 64, 128)))
     }
 
-    /// The history of each output from rest, through a force given at every step (`within` values an output interval); outputs are written at
-    /// every `within`-th of them.
+    /// The history of each output from rest, through a force given at every step (`within` values an output
+    /// interval); outputs are written at every `within`-th of them.
     pub(crate) fn run(&self, force: &[f64], samples: usize) -> Vec<Vec<f64>> {
         self.0.run(force, samples)
     }
@@ -135,7 +138,8 @@ impl<const N: usize, const E: usize> Sized<N, E> {
         Some(Sized { smooth, propagators, laws, motions, outputs, within: steps.within })
     }
 
-    /// One step with the propagator of `halving`; whether an event lies within it, in which case nothing is changed.
+    /// One step with the propagator of `halving`; whether an event lies within it, in which case nothing is
+    /// changed.
     #[inline(always)]
     fn plain_step(
         &self,
@@ -309,7 +313,8 @@ mod tests {
 
     const OMEGA: f64 = 900.0;
 
-    /// One mass of 1 kg on a spring without damping; outputs are d, its rate, its acceleration and the element's force.
+    /// One mass of 1 kg on a spring without damping; outputs are d, its rate, its acceleration and the
+    /// element's force.
     fn oscillator(law: RestoringLaw) -> System {
         let output = |row: [f64; 2], force: f64, element: f64| Output {
             row: row.to_vec(),

@@ -27,7 +27,8 @@ pub enum RestoringLaw {
     },
 }
 
-/// What a law remembers: where it was and what it bore. A spring that slips needs both, the others need neither.
+/// What a law remembers: where it was and what it bore. A spring that slips needs both, the others need
+/// neither.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Memory {
     /// Relative motion d, m or rad.
@@ -95,7 +96,8 @@ impl RestoringLaw {
         Self::of_kind(self.kind(), value).unwrap_or(*self)
     }
 
-    /// Whether all parameters are positive, and a fit moves them by their logarithms: a cubic stiffness may have either sign.
+    /// Whether all parameters are positive, and a fit moves them by their logarithms: a cubic stiffness may
+    /// have either sign.
     pub(crate) fn is_positive(&self) -> bool {
         !matches!(self, RestoringLaw::Cubic { .. })
     }
@@ -126,7 +128,8 @@ impl RestoringLaw {
         }
     }
 
-    /// Solves d = free − yields·g(d): motion and force at the end of a step during which the force itself moves d by −`yields` per N.
+    /// Solves d = free − yields·g(d): motion and force at the end of a step during which the force itself
+    /// moves d by −`yields` per N.
     #[inline]
     pub(crate) fn settle(&self, free: f64, yields: f64, before: &Memory) -> Memory {
         let force = match *self {

@@ -19,11 +19,12 @@ pub struct Simulation {
     pub error: f64,
 }
 
-/// Accelerations at `outputs` that the fixture with its effects shows under the force of every hit; the hits' own responses are not
-/// looked at. Each hit starts from rest. Between samples the force is the band-limited signal through them.
+/// Accelerations at `outputs` that the fixture with its effects shows under the force of every hit; the hits'
+/// own responses are not looked at. Each hit starts from rest. Between samples the force is the band-limited
+/// signal through them.
 ///
-/// Steps are halved until halving changes no response by more than 1e-5 of its rms. Gains, delays, offsets and the
-/// response window that the fixture names are those of the simulated instruments too.
+/// Steps are halved until halving changes no response by more than 1e-5 of its rms. Gains, delays, offsets
+/// and the response window that the fixture names are those of the simulated instruments too.
 ///
 /// # Errors
 /// Channels that the fixture does not have, effects that have no form over time.
@@ -63,7 +64,8 @@ pub(crate) fn simulate_one(
     loop {
         within *= 2;
         let fine = run(within)?;
-        // The error falls at least with the square of the step: that of the finer one is below a third of the difference.
+        // The error falls at least with the square of the step: that of the finer one is below a third of the
+        // difference.
         let error =
             coarse.iter().zip(&fine).map(|(a, b)| relative_difference(a, b) / 3.0).fold(0.0, f64::max);
         if error < ENOUGH || within >= MOST_STEPS {

@@ -37,7 +37,8 @@ impl<'a> Structure<'a> {
         }
     }
 
-    /// One component of the motion across a joint: the row over all states that reads it, and the load of a force pair of 1 that drives it.
+    /// One component of the motion across a joint: the row over all states that reads it, and the load of a
+    /// force pair of 1 that drives it.
     pub(crate) fn across(&self, joint: &str, dof: Dof) -> Option<(Vec<f64>, Vec<f64>)> {
         let [deflection, rotation] = self.space.across(joint)?;
         Some(if dof == Dof::Rotation { rotation } else { deflection })
@@ -48,8 +49,9 @@ impl<'a> Structure<'a> {
         Ok(self.space.load(&station(self.fixture, struck, Side::Reference)?))
     }
 
-    /// The system under a load, read by `readings` and by rows over all states of the assembly. Rigid motions that nothing holds and no
-    /// element feels are no states of it: their accelerations follow from the force at once.
+    /// The system under a load, read by `readings` and by rows over all states of the assembly. Rigid motions
+    /// that nothing holds and no element feels are no states of it: their accelerations follow from the force
+    /// at once.
     pub(crate) fn system(
         &self,
         load: Vec<f64>,

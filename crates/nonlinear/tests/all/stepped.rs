@@ -1,4 +1,5 @@
-//! Stepped sines at several levels: laws balanced here by stepping through a period, and the real bolted joint where its recording is present.
+//! Stepped sines at several levels: laws balanced here by stepping through a period, and the real bolted
+//! joint where its recording is present.
 
 use jointscope_fixture::{EffectKind, Fixture};
 use jointscope_nonlinear::{Held, NonlinearOptions, SteppedDiagnosis, SteppedLevel, Verdict};

@@ -18,8 +18,8 @@ pub struct Lookup {
 }
 
 impl Lookup {
-    /// Looks a recording's misfit up. The library holds the effects that the diagnosis knows, at every place, in the sizes from which
-    /// it sets out. `None` where no signature can be simulated.
+    /// Looks a recording's misfit up. The library holds the effects that the diagnosis knows, at every place,
+    /// in the sizes from which it sets out. `None` where no signature can be simulated.
     pub fn of(refitted: &Fixture, observation: &Observation) -> Option<Self> {
         let predict = |fixture: &Fixture| {
             let (pairs, lines) = (observation.pairs(), observation.lines());

@@ -30,7 +30,8 @@ pub struct Method {
     /// Single and double effects that show after which its model fits to the noise.
     #[serde(rename = "fits_to_the_noise")]
     pub fits: Option<Share>,
-    /// The worst of a fixture's quantities: true less identified, in stated standard deviations, median over those cases.
+    /// The worst of a fixture's quantities: true less identified, in stated standard deviations, median over
+    /// those cases.
     #[serde(rename = "worst_quantity_in_stated_deviations")]
     pub worst_quantity: Option<f64>,
     /// Of the joints' stiffnesses the worst relative error, median over those cases.
@@ -60,7 +61,8 @@ struct Compared<'a> {
 }
 
 impl Methods {
-    /// Compares the answers to judged cases with the baselines' to the same cases, which were `believed` to be what their fixtures say.
+    /// Compares the answers to judged cases with the baselines' to the same cases, which were `believed` to
+    /// be what their fixtures say.
     pub fn of(judged: &[Judged], believed: &[&Fixture], baselines: &[Option<Baseline>]) -> Self {
         let all = judged.iter().zip(believed).zip(baselines);
         let all: Vec<Compared> = all
@@ -137,16 +139,16 @@ impl Method {
     }
 }
 
-/// Whether a case says something about identified quantities. A joint that is stiffer as a whole *is* described by another modulus: there
-/// an updated one is no error.
+/// Whether a case says something about identified quantities. A joint that is stiffer as a whole *is*
+/// described by another modulus: there an updated one is no error.
 fn is_asked(judged: &Judged) -> bool {
     let of_effects = matches!(judged.truth.role, Role::Single | Role::Double);
     let own_stiffness = judged.truth.effects().iter().any(|e| e.kind == EffectKind::StiffnessChange);
     of_effects && judged.is_visible() && !own_stiffness
 }
 
-/// The worst departure of identified quantities from the true ones in stated deviations, and the worst relative error of a joint's
-/// stiffness.
+/// The worst departure of identified quantities from the true ones in stated deviations, and the worst
+/// relative error of a joint's stiffness.
 fn quantity_errors(case: &Compared, identified: &Fixture) -> (f64, Option<f64>) {
     let (identified, exact) = (values(identified), values(&case.judged.truth.fixture));
     let quantities = case.believed.quantities();

@@ -8,7 +8,8 @@ use serde::Serialize;
 pub const WIDER: f64 = 30.0;
 /// Relative deviation that widening ends at: a quantity that may be anything.
 const WIDEST: f64 = 0.5;
-/// χ² per degree of freedom up to which a model counts as fitting: the diagnosis' own bound for noise from coherence.
+/// χ² per degree of freedom up to which a model counts as fitting: the diagnosis' own bound for noise from
+/// coherence.
 const FITS: f64 = 1.2;
 
 /// A fixture updated to a recording.
@@ -21,7 +22,8 @@ pub struct Updated {
 }
 
 impl Updated {
-    /// The best of a fit from afar and one from nearby, under tolerances `wider` than stated; `None` where the fixture predicts nothing.
+    /// The best of a fit from afar and one from nearby, under tolerances `wider` than stated; `None` where
+    /// the fixture predicts nothing.
     pub(crate) fn of(believed: &Fixture, wider: f64, observation: &Observation) -> Option<Self> {
         let start = Hypothesis::nominal(&widened(believed, wider), false);
         let fits = [true, false].into_iter().filter_map(|far| Fit::of(&start, observation, far));

@@ -32,7 +32,8 @@ const MASS: [f64; 2] = [0.01, 0.1];
 const GAIN: [f64; 2] = [0.05, 0.5];
 /// Phase by which a delay turns the highest line, rad.
 const DELAY: [f64; 2] = [0.06, 0.6];
-/// Distance by which a point is moved, m, and at the least in its standard deviations: less would be tolerance.
+/// Distance by which a point is moved, m, and at the least in its standard deviations: less would be
+/// tolerance.
 const OFFSET: [f64; 2] = [0.002, 0.009];
 const OFFSET_DEVIATIONS: [f64; 2] = [5.0, 12.0];
 /// |ln factor| of a stiffness, and at the least in its relative deviations.
@@ -56,7 +57,8 @@ impl BaseTest<'_> {
         }
     }
 
-    /// Conceals something of a kind; `None` where what was drawn is impossible, and another draw may be possible.
+    /// Conceals something of a kind; `None` where what was drawn is impossible, and another draw may be
+    /// possible.
     pub(super) fn draw(
         &self,
         kind: ConcealmentKind,
@@ -185,8 +187,8 @@ impl BaseTest<'_> {
         Drawn { case, what, expected: vec![expected] }
     }
 
-    /// A gain or delay of a channel, and those of other channels that do the same to all that was recorded: of a channel that is read in the
-    /// same FRFs.
+    /// A gain or delay of a channel, and those of other channels that do the same to all that was recorded:
+    /// of a channel that is read in the same FRFs.
     fn of_channel(&self, kind: EffectKind, side: Side, channel: &Channel, value: f64) -> Expected {
         let pairs = self.recorded.pairs();
         let effect = |side: Side, channel: &Channel, value: f64| {
@@ -204,7 +206,8 @@ impl BaseTest<'_> {
         Expected { effect: effect(side, channel, value), same }
     }
 
-    /// An exchange of two channels as two points that are where the other is said to be; none where it is more than that.
+    /// An exchange of two channels as two points that are where the other is said to be; none where it is
+    /// more than that.
     fn as_offsets(&self, side: Side, [one, other]: [&Channel; 2]) -> Vec<Expected> {
         let pairs = self.recorded.pairs();
         let point = |channel: &Channel| self.explaining.point(&channel.point);

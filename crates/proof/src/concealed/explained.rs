@@ -8,7 +8,8 @@ use jointscope_spectra::FrfSet;
 use serde_json::{Value, json};
 use std::fmt;
 
-/// The fixture that explains a recording as well as this program can: the given one where that does, else what diagnoses repair it to.
+/// The fixture that explains a recording as well as this program can: the given one where that does, else
+/// what diagnoses repair it to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Explained {
     /// The fixture that explains.
@@ -18,8 +19,9 @@ pub struct Explained {
 }
 
 impl Explained {
-    /// Diagnoses `recorded` against the fixture as given, and against what that repairs it to, until nothing is left to be found; `rounds`
-    /// times at the most, and once at the least. A diagnosis names three effects and no more, and of a recording long enough others may be left.
+    /// Diagnoses `recorded` against the fixture as given, and against what that repairs it to, until nothing
+    /// is left to be found; `rounds` times at the most, and once at the least. A diagnosis names three
+    /// effects and no more, and of a recording long enough others may be left.
     ///
     /// # Errors
     /// [`NoAnswer`], where the diagnosis has none.
@@ -46,7 +48,8 @@ impl Explained {
         self.rounds.last().is_some_and(|last| last.verdict == Verdict::Consistent)
     }
 
-    /// Diagnoses all cases of this recording, as [`Answers::by`]; the first control not again, where it is what has been diagnosed already.
+    /// Diagnoses all cases of this recording, as [`Answers::by`]; the first control not again, where it is
+    /// what has been diagnosed already.
     pub fn answers(&self, cases: &[Case], threads: usize, progress: impl Fn(usize) + Sync) -> Answers {
         let known = cases.first().zip(self.rounds.last().filter(|_| self.is_settled()));
         Answers::by(cases, threads, progress, |case| match known {

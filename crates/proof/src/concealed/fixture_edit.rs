@@ -97,7 +97,8 @@ pub(super) fn with_point_moved(fixture: &Fixture, point: usize, dx: f64) -> Resu
     requantified(fixture, |owner, _| owner == QuantityOwner::Point(point), |x| x + dx, 1.0)
 }
 
-/// The fixture with the stiffness of a joint or beam body stated `factor` times as large, its relative deviation as it was.
+/// The fixture with the stiffness of a joint or beam body stated `factor` times as large, its relative
+/// deviation as it was.
 pub(super) fn with_stiffness(
     fixture: &Fixture,
     stiff: QuantityOwner,

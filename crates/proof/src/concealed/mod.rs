@@ -1,14 +1,17 @@
-//! The diagnosis on real recordings: something is concealed relative to a fixture that explains them, and must be found in real noise.
+//! The diagnosis on real recordings: something is concealed relative to a fixture that explains them, and
+//! must be found in real noise.
 //!
-//! No fixture fits a real recording to its noise by itself. [`Explained`] is the fixture that does: the given one, or what a first
-//! diagnosis repairs it to. A [`ConcealmentPlan`] then deletes an entry of that fixture, misstates one, or alters a channel of the
-//! recording; some cases stay as they are, as controls. As with simulated cases the diagnosis is handed a [`Case`](crate::Case) and nothing else, and
-//! the [`Concealed`] truths come out of their seal against the answers to all cases. [`ConcealmentScores`] then lays both side by side.
+//! No fixture fits a real recording to its noise by itself. [`Explained`] is the fixture that does: the given
+//! one, or what a first diagnosis repairs it to. A [`ConcealmentPlan`] then deletes an entry of that fixture,
+//! misstates one, or alters a channel of the recording; some cases stay as they are, as controls. As with
+//! simulated cases the diagnosis is handed a [`Case`](crate::Case) and nothing else, and the [`Concealed`]
+//! truths come out of their seal against the answers to all cases. [`ConcealmentScores`] then lays both side
+//! by side.
 //!
 //! Case 0 is always a control: what is found in it is the recording's own, and no false alarm elsewhere.
 //!
-//! Nothing here is built of the diagnosis' own parts or of the model: cases are edits of a fixture's entries and of recorded values.
-//! Only [`ConcealmentScores`] evaluates objectives.
+//! Nothing here is built of the diagnosis' own parts or of the model: cases are edits of a fixture's entries
+//! and of recorded values. Only [`ConcealmentScores`] evaluates objectives.
 //!
 //! ```
 //! use jointscope_proof::concealed::{ConcealmentPlan, ConcealmentScores};

@@ -18,7 +18,8 @@ pub enum Outcome {
     Found,
     /// Of two effects one.
     HalfFound,
-    /// Another name, by which the repaired fixture fits as well as the one that explains: the recording cannot tell them apart.
+    /// Another name, by which the repaired fixture fits as well as the one that explains: the recording
+    /// cannot tell them apart.
     AsGood,
     /// The kind, at another place.
     Elsewhere,
@@ -26,7 +27,8 @@ pub enum Outcome {
     Confused,
     /// Nothing.
     Missed,
-    /// No effect describes it, and the diagnosis says that something is wrong without naming an effect with certainty.
+    /// No effect describes it, and the diagnosis says that something is wrong without naming an effect with
+    /// certainty.
     Noticed,
     /// The fixture, refitted within its tolerances, does nearly as well without it: nobody is asked for it.
     DoesNotShow,

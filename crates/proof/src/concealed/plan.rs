@@ -45,9 +45,10 @@ impl ConcealmentPlan {
         }
     }
 
-    /// Makes the cases and, sealed, their truths. Case 0 is fixture and recording as they are. Every fourth case after it is a control
-    /// too, in which the fixture's quantities are stated anew, drawn from the normal distributions that it states for them. In all others
-    /// something is concealed, the kinds in turn, in an order that the seed decides. A case depends on seed, number and the kinds alone.
+    /// Makes the cases and, sealed, their truths. Case 0 is fixture and recording as they are. Every fourth
+    /// case after it is a control too, in which the fixture's quantities are stated anew, drawn from the
+    /// normal distributions that it states for them. In all others something is concealed, the kinds in turn,
+    /// in an order that the seed decides. A case depends on seed, number and the kinds alone.
     ///
     /// # Errors
     /// See [`ConcealmentError`].

@@ -45,7 +45,8 @@ impl Side {
     }
 }
 
-/// Multiplies a channel's signal by `factor` of ω: the FRFs of a response by it, those of a reference by its inverse.
+/// Multiplies a channel's signal by `factor` of ω: the FRFs of a response by it, those of a reference by its
+/// inverse.
 pub(super) fn with_signal(
     recorded: &FrfSet,
     side: Side,

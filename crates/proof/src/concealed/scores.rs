@@ -21,10 +21,12 @@ pub struct ScoredConcealment {
     pub extra: Vec<Name>,
     /// Findings that the control has too.
     pub own: Vec<Name>,
-    /// What the concealment costs the fixture as refitted by the answer: its χ² and squared departures over those of the first control's
-    /// refitted fixture, so that what the recording has of its own counts on both sides; `None` where it cannot be evaluated.
+    /// What the concealment costs the fixture as refitted by the answer: its χ² and squared departures over
+    /// those of the first control's refitted fixture, so that what the recording has of its own counts on
+    /// both sides; `None` where it cannot be evaluated.
     pub shows: Option<f64>,
-    /// The same of the repaired fixture, over that of the first control's: zero, and a little to either side, if all is made good.
+    /// The same of the repaired fixture, over that of the first control's: zero, and a little to either side,
+    /// if all is made good.
     pub left: Option<f64>,
 }
 
@@ -38,7 +40,8 @@ pub struct ConcealmentScores {
 }
 
 impl ConcealmentScores {
-    /// Lays truths and answers side by side, on `threads` workers. The first case is the control that decides what is the recording's own.
+    /// Lays truths and answers side by side, on `threads` workers. The first case is the control that decides
+    /// what is the recording's own.
     pub fn of(cases: &[Case], truths: Vec<Concealed>, answers: &Answers, threads: usize) -> Self {
         let work: Vec<_> = cases.iter().zip(answers.all()).collect();
         let objectives = on_workers(&work, threads, |_| (), |(case, answer)| Objectives::of(case, answer));
@@ -57,13 +60,15 @@ impl ConcealmentScores {
         ConcealmentScores { cases: scored.collect(), own }
     }
 
-    /// A share by its key: `quiet` of the controls but the first; `found` (kind and place), `kind` and `extra` (further findings) of the
-    /// concealments that show and that effects describe; `noticed` of those that no effect describes; `intervals` (that hold the truth)
-    /// of the found parameters of planted sizes and `agreements` of those of deleted entries, whose size had been found in the same
-    /// recording. Nothing of nothing by any other key.
+    /// A share by its key: `quiet` of the controls but the first; `found` (kind and place), `kind` and
+    /// `extra` (further findings) of the concealments that show and that effects describe; `noticed` of those
+    /// that no effect describes; `intervals` (that hold the truth) of the found parameters of planted sizes
+    /// and `agreements` of those of deleted entries, whose size had been found in the same recording. Nothing
+    /// of nothing by any other key.
     pub fn share(&self, key: &str) -> Share {
         let concealed = || self.cases.iter().filter(|case| !case.truth.is_control());
-        // By the same measure whether it was found or not: what is found below it is luck, what is missed there no fault.
+        // By the same measure whether it was found or not: what is found below it is luck, what is missed
+        // there no fault.
         let asked = || {
             let there = |case: &&ScoredConcealment| {
                 let shows = case.shows.is_none_or(|shows| shows >= VISIBLE);

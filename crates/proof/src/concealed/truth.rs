@@ -14,7 +14,8 @@ pub enum ConcealmentKind {
     Entry,
     /// A point mass is stated that is not there.
     Mass,
-    /// The stiffness of a joint or of a beam body is stated wrong by a factor, its relative deviation as it was.
+    /// The stiffness of a joint or of a beam body is stated wrong by a factor, its relative deviation as it
+    /// was.
     Stiffness,
     /// A point is stated where it is not.
     Point,
@@ -55,7 +56,8 @@ impl ConcealmentKind {
         }
     }
 
-    /// Whether the size of what is concealed is known apart from the recording: that of a deleted entry may itself have been found in it.
+    /// Whether the size of what is concealed is known apart from the recording: that of a deleted entry may
+    /// itself have been found in it.
     pub(crate) fn is_planted(self) -> bool {
         self != ConcealmentKind::Entry
     }
@@ -86,7 +88,8 @@ pub struct Concealed {
     pub kind: Option<ConcealmentKind>,
     /// What was done, in words.
     pub what: String,
-    /// The effects that undo it, all of which are needed; none of a control, and none where no effect describes it.
+    /// The effects that undo it, all of which are needed; none of a control, and none where no effect
+    /// describes it.
     pub expected: Vec<Expected>,
 }
 

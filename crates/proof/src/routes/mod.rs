@@ -1,10 +1,14 @@
-//! Cases by several routes: the laboratory's FRFs, the FRFs of solids, hits over time; one seal on all their truths.
+//! Cases by several routes: the laboratory's FRFs, the FRFs of solids, hits over time; one seal on all their
+//! truths.
 //!
-//! The laboratory and the diagnosis model the same assembly, of rigid blocks and massless beams, in two programs. The other routes do
-//! not: a solid is meshed and has mass, shear and layers of its own; hits are integrated step by step, and no FRF is computed on the way; solids as they
-//! are, and structures with errors in every mode, are such that no fixture is right to the noise; lumped cases hide what the laboratory's own do not.
+//! The laboratory and the diagnosis model the same assembly, of rigid blocks and massless beams, in two
+//! programs. The other routes do not: a solid is meshed and has mass, shear and layers of its own; hits are
+//! integrated step by step, and no FRF is computed on the way; solids as they are, and structures with errors
+//! in every mode, are such that no fixture is right to the noise; lumped cases hide what the laboratory's own
+//! do not.
 //!
-//! A route is a module that draws a case and its truth, judges an answer by that truth, and scores what was judged; here they come together.
+//! A route is a module that draws a case and its truth, judges an answer by that truth, and scores what was
+//! judged; here they come together.
 
 //!
 //! Which routes there are is said once, at the end of this file; beside that a route has a count in [`Plan`].
@@ -83,11 +87,13 @@ impl Given for Replies {
     }
 }
 
-/// A route's share of the cases that the laboratory makes, and how many these are at the least for a route to have any.
+/// A route's share of the cases that the laboratory makes, and how many these are at the least for a route to
+/// have any.
 const SHARE: (usize, usize) = (20, 20);
 
 impl Plan {
-    /// Cases of each other route that come along with so many of the laboratory's: one in twenty, none with fewer than twenty.
+    /// Cases of each other route that come along with so many of the laboratory's: one in twenty, none with
+    /// fewer than twenty.
     pub fn along_with(cases: usize) -> usize {
         if cases < SHARE.1 { 0 } else { cases / SHARE.0 }
     }
@@ -95,9 +101,10 @@ impl Plan {
 
 /// Defines whatever holds something of every route, and how routes are drawn, judged and scored.
 ///
-/// A line is a route beside the laboratory's, in the order in which cases are numbered: its key in files, which is its field here and its count in [`Plan`], what is
-/// true of a case; what a recording holds, with the types of case and answers; where recordings come from, in words; how a case is drawn, how all are judged, and
-/// how they are scored.
+/// A line is a route beside the laboratory's, in the order in which cases are numbered: its key in files,
+/// which is its field here and its count in [`Plan`], what is true of a case; what a recording holds, with
+/// the types of case and answers; where recordings come from, in words; how a case is drawn, how all are
+/// judged, and how they are scored.
 macro_rules! routes {
     ($(
         $key:ident: $Route:ident($Truth:ty), $Recording:ident($Case:ty => $Answers:ty), $what:literal,
@@ -129,9 +136,10 @@ macro_rules! routes {
         }
 
         impl Replies {
-            /// Diagnoses all cases on `threads` workers, whatever their route: none waits for the last case of another. `told` hears the number of
-            /// answers given so far; `watch` sees every diagnosis with its case's position among all, on the worker that made it and after its time was
-            /// taken. A case keeps to one core.
+            /// Diagnoses all cases on `threads` workers, whatever their route: none waits for the last case
+            /// of another. `told` hears the number of answers given so far; `watch` sees every diagnosis with
+            /// its case's position among all, on the worker that made it and after its time was taken. A case
+            /// keeps to one core.
             pub fn to(
                 cases: &Questions,
                 threads: usize,
@@ -233,8 +241,8 @@ macro_rules! routes {
                 vec![$((stringify!($key), self.$key)),+]
             }
 
-            /// Makes the cases of all routes, their truths under one seal. A case depends on the seed (or the text), its route and its number within
-            /// that alone.
+            /// Makes the cases of all routes, their truths under one seal. A case depends on the seed (or the
+            /// text), its route and its number within that alone.
             ///
             /// # Errors
             /// See [`GenerationError`].
@@ -263,7 +271,8 @@ macro_rules! routes {
         }
 
         impl RouteScores {
-            /// Judges all cases beside the laboratory's on `threads` workers and scores them by route; `told` hears the number of cases of FRFs judged so far.
+            /// Judges all cases beside the laboratory's on `threads` workers and scores them by route; `told`
+            /// hears the number of cases of FRFs judged so far.
             pub fn of(
                 cases: &Questions,
                 truths: Opened,

@@ -64,7 +64,8 @@ fn methods_are_compared_by_their_names_and_by_how_wrong_their_quantities_are() {
     }
     assert_eq!(methods[0].nulls, Some(Share { of: 4, all: 4 }));
     assert_eq!(methods[1].nulls, Some(Share { of: 0, all: 4 }), "what is left there is no noise");
-    // The true quantities as an answer are right; stated ones are off by what was drawn, one to four deviations at the worst.
+    // The true quantities as an answer are right; stated ones are off by what was drawn, one to four
+    // deviations at the worst.
     assert!(methods[0].worst_quantity.unwrap() < 1e-9 && methods[0].unmeasured.unwrap() < 1e-6);
     let worst = methods[1].worst_quantity.unwrap();
     assert!((1.0..4.0).contains(&worst), "{worst}");

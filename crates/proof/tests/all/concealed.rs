@@ -1,5 +1,5 @@
-//! How things are concealed in a recording that a fixture explains, and how the answers are scored. A simulated recording stands in
-//! for a real one.
+//! How things are concealed in a recording that a fixture explains, and how the answers are scored. A
+//! simulated recording stands in for a real one.
 
 use crate::common::found;
 use jointscope_diagnosis::Verdict;
@@ -11,7 +11,8 @@ use jointscope_proof::{Answer, Answers, Case, NoAnswer};
 use jointscope_rig::{HammerSetup, Instrument, frfs};
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 
-/// Two blocks, a strip that shears and is glued, a known mass, a soft support: room for every kind of concealment.
+/// Two blocks, a strip that shears and is glued, a known mass, a soft support: room for every kind of
+/// concealment.
 const EXPLAINING: &str = r#"{
   "bodies": {
     "A": { "mass": {"value": 1.10, "std": 0.002}, "inertia": {"value": 9.5e-4, "std": 5e-6}, "x_cg": -0.030,

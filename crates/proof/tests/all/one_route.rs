@@ -6,7 +6,8 @@ use jointscope_proof::{Plan, Questions, Replies, StruckAnswer, StruckCase};
 use jointscope_rig::{StrikeTest, generator};
 use jointscope_spectra::Channel;
 
-/// Two blocks on a spring whose motion outlasts the records; the second carries a mass that its body does not state.
+/// Two blocks on a spring whose motion outlasts the records; the second carries a mass that its body does not
+/// state.
 const RINGING: &str = r#"{
   "bodies": { "A": { "mass": {"value": 2.0, "std": 0.002}, "rotates": false },
               "B": { "mass": {"value": 3.0, "std": 0.003}, "rotates": false } },
@@ -51,7 +52,8 @@ fn the_fixtures_own_effects_are_kept_under_an_exponential_window() {
 
 #[test]
 fn where_modes_rest_in_a_false_minimum_the_names_they_hold_probable_are_asked_for_by_lines() {
-    // By its modes alone this joint seems to need an error of 0.7 % in every frequency, whatever is named; by its lines a foot that gives way leaves noise.
+    // By its modes alone this joint seems to need an error of 0.7 % in every frequency, whatever is named; by
+    // its lines a foot that gives way leaves noise.
     let (cases, truths) = opened(&Plan { cases: 200, seed: 2024, only: Some(136), ..Plan::default() });
     let questions = Questions { laboratory: cases, ..Questions::default() };
     let replies = Replies::to(&questions, 1, |_| (), |_, _| ());

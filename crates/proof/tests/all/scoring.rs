@@ -41,7 +41,8 @@ fn answers_to_other_cases_score_at_chance() {
         .iter()
         .zip(next)
         .map(|(truth, other)| {
-            // What was hidden elsewhere, as an answer to this case; the fixture handed back does not matter here.
+            // What was hidden elsewhere, as an answer to this case; the fixture handed back does not matter
+            // here.
             let findings = other.effects().iter().map(|effect| found(effect, 0.99, |_| 0.0)).collect();
             let own = Judged { answer: Ok(answer(other, findings)), ..judged(truth, &[]) };
             Judged { fits: jointscope_proof::IndependentFits { repaired: 900.0, ..own.fits }, ..own }

@@ -9,8 +9,9 @@ fn plan(graded: usize) -> Plan {
     Plan { cases: 8, graded, seed: 11, families: vec![Family::TwoBlocks], ..Plan::default() }
 }
 
-/// χ² and squared departures of the best fit of the quantities alone: by the diagnosis' own fits from what is stated, or from the true
-/// quantities. Either may end in a false minimum, where tolerances imitate nearly all of an effect or peaks are very sharp.
+/// χ² and squared departures of the best fit of the quantities alone: by the diagnosis' own fits from what is
+/// stated, or from the true quantities. Either may end in a false minimum, where tolerances imitate nearly
+/// all of an effect or peaks are very sharp.
 fn without_effects(case: &Case, truth: &Fixture, observation: &Observation) -> f64 {
     let start = Hypothesis::nominal(&case.believed, false);
     let fits = [true, false].into_iter().filter_map(|far| Fit::of(&start, observation, far));
@@ -94,12 +95,14 @@ fn the_smallest_effect_that_shows_costs_a_fit_without_it_what_was_stated() {
     // The limit is of first order; the laboratory and full fits are the check.
     let (cases, truths) = opened(&plan(0));
     let truth = &truths[1];
-    // An analyst who happens to believe what is true: where peaks are sharper than the lines' spacing much hangs on how near they fall.
+    // An analyst who happens to believe what is true: where peaks are sharper than the lines' spacing much
+    // hangs on how near they fall.
     let case = &Case { believed: truth.fixture.clone(), ..cases[1].clone() };
     let limits = Limits::of(&case.believed, &case.recorded).unwrap();
     let mut checked = 0;
     for shown in &limits.smallest {
-        // Of the others the best abscissa or frequency is not told. Dashpots count as none, a sensor's damping ratio is the one that was tried.
+        // Of the others the best abscissa or frequency is not told. Dashpots count as none, a sensor's
+        // damping ratio is the one that was tried.
         let more: &[f64] = match shown.name.kind {
             EffectKind::Footing => &[0.0],
             EffectKind::ChannelResonance => &[0.03],

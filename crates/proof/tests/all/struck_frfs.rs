@@ -26,7 +26,8 @@ fn ratio(measured: &FrfSet, model: &FrfSet, noise: &FrfSet) -> f64 {
     sum / measured.all_values().len() as f64
 }
 
-/// One record that ends nearly quiet, one that does not, and one whose χ² a delay of 0.23 µs that nobody hid once lowered by 719.
+/// One record that ends nearly quiet, one that does not, and one whose χ² a delay of 0.23 µs that nobody hid
+/// once lowered by 719.
 #[test]
 fn hits_on_linear_structures_give_the_structures_frfs_to_the_stated_noise() {
     let mut sum = 0.0;

@@ -20,7 +20,8 @@ fn style(joint: &Decomposed) -> Style {
     }
 }
 
-/// The joints with their places, models last: a line of dots is lost below a measurement's noise, not above it.
+/// The joints with their places, models last: a line of dots is lost below a measurement's noise, not above
+/// it.
 fn in_drawing_order(comparison: &Comparison) -> impl Iterator<Item = (usize, &Decomposed)> {
     let all = || comparison.joints.iter().enumerate();
     let is_model = |joint: &Decomposed| joint.source.is_some_and(Source::is_model);
@@ -154,7 +155,8 @@ fn nominal(comparison: &Comparison, kind: Kind, (i, j): (usize, usize)) -> Optio
 /// Relative difference up to which levels are drawn as one line.
 const SAME: f64 = 1e-3;
 
-/// What is drawn at first: the estimates and the middle of the lines in the joints' averaging bands, which poles and noise would squash.
+/// What is drawn at first: the estimates and the middle of the lines in the joints' averaging bands, which
+/// poles and noise would squash.
 fn range(comparison: &Comparison, kind: Kind, element: (usize, usize)) -> YRange {
     let of_joint = |(index, joint): (usize, &Decomposed)| {
         let (from, to) = joint.average.map_or((0.0, f64::INFINITY), |average| average.band);

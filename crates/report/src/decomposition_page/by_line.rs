@@ -92,7 +92,8 @@ fn plot(subject: &Subject, part: DynamicStiffnessPart, element: MatrixElement) -
         .caption(caption(subject, part, element))
 }
 
-/// The law that the joint's numbers are of over the lines, its mass included as the lines hold it; of spectra by the exact relation, where laws were compared.
+/// The law that the joint's numbers are of over the lines, its mass included as the lines hold it; of spectra
+/// by the exact relation, where laws were compared.
 fn law(subject: &Subject, part: DynamicStiffnessPart, element: MatrixElement) -> Option<Vec<Option<f64>>> {
     let analysis = subject.analysis;
     let fit = analysis.joint_fit.as_ref().ok().filter(|_| !subject.is_paper())?;
@@ -171,8 +172,8 @@ impl Columns {
         columns
     }
 
-    /// What is drawn at first: the middle of the averaging band's lines, the level and nominal curves there, and some room about
-    /// them for the other lines. Poles and noisy lines would squash all of it.
+    /// What is drawn at first: the middle of the averaging band's lines, the level and nominal curves there,
+    /// and some room about them for the other lines. Poles and noisy lines would squash all of it.
     fn range(&self, analysis: &Analysis, level: Option<f64>) -> YRange {
         let hz = analysis.spectrum.h41.lines.hz();
         let band = |hz: f64| analysis.averages.band.contains(hz);

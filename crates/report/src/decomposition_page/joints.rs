@@ -20,8 +20,8 @@ const CORRELATED: f64 = 0.5;
 /// Correlations listed at the most.
 const LISTED: usize = 12;
 
-/// The page of several joints: the fixture, k and c of every joint with the fixture's own beside them, laws and tests of each, numbers of
-/// different joints that are known together, and where the fixture moved.
+/// The page of several joints: the fixture, k and c of every joint with the fixture's own beside them, laws
+/// and tests of each, numbers of different joints that are known together, and where the fixture moved.
 ///
 /// `fixture` is the one that the joints were found with. The same input gives the same bytes.
 pub(crate) fn joints_report(fit: &JointsFit, fixture: &Fixture, context: &PageContext) -> Report {

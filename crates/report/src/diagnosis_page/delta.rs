@@ -66,7 +66,8 @@ fn of_effect(finding: &Finding, location: &Location, fixture: &Fixture) -> Optio
     Some((formula, known(location).map(at).collect()))
 }
 
-/// The law of a sensor that is moved about depends on the accelerance of its own seat: taken as it was fitted to δ.
+/// The law of a sensor that is moved about depends on the accelerance of its own seat: taken as it was fitted
+/// to δ.
 fn roving(finding: &Finding, location: &Location) -> Option<Curve> {
     let law = location.laws.iter().find(|law| law.name == "a sensor's mass")?;
     if finding.effect.kind != EffectKind::SensorMass || law.values.len() != location.delta.len() {

@@ -47,7 +47,8 @@ pub(super) fn judged(subject: &Subject, index: usize) -> String {
     format!("Magnitude. χ² per value (1 is noise{own}): {}{most}.", chi2.join(", "))
 }
 
-/// The plots of an FRF with what no fit of the held-out judgement saw shaded; the first one's legend tells it.
+/// The plots of an FRF with what no fit of the held-out judgement saw shaded; the first one's legend tells
+/// it.
 pub(super) fn with_held_out(subject: &Subject, index: usize, plots: impl Iterator<Item = Plot>) -> Vec<Plot> {
     let label = |at: usize| if at == 0 { "held out" } else { "" };
     plots.enumerate().map(|(at, plot)| held_out(subject, index, plot, label(at))).collect()

@@ -1,4 +1,5 @@
-//! What a reader wants first: what is missing and how sure that is, how much better the model is for it, what to do next; and where it sits.
+//! What a reader wants first: what is missing and how sure that is, how much better the model is for it, what
+//! to do next; and where it sits.
 
 use jointscope_diagnosis::{Departure, Estimate, Finding, Verdict};
 use jointscope_wording::{Remarks, capitalised, effect_name, held_out_part};
@@ -40,7 +41,8 @@ pub(super) fn chance(probability: f64) -> String {
     }
 }
 
-/// Each with its size and interval, and its probability with what else it could be: a card of its own where there is one finding.
+/// Each with its size and interval, and its probability with what else it could be: a card of its own where
+/// there is one finding.
 fn findings(findings: &[Finding]) -> Vec<Card> {
     let tone = |finding: &Finding| finding.is_doubtful().then_some(Tone::Problem);
     match findings {

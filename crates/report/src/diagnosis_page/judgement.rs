@@ -40,7 +40,8 @@ pub(super) fn section(subject: &Subject) -> Section {
     }
 }
 
-/// What was held out of the fit, how the models predicted it, and whether the search finds the same without it.
+/// What was held out of the fit, how the models predicted it, and whether the search finds the same without
+/// it.
 fn with_held_out(section: Section, diagnosis: &Diagnosis, held_out: &HeldOut) -> Section {
     let same = match (held_out.same_findings, diagnosis.findings.is_empty()) {
         (None, _) => "",

@@ -11,7 +11,8 @@ pub(super) struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    /// The models that are compared, by name. The repaired one is there only where it is another than the refitted.
+    /// The models that are compared, by name. The repaired one is there only where it is another than the
+    /// refitted.
     pub(super) fn models(&self) -> Vec<(&'static str, &'a Fit)> {
         let search = &self.diagnosis.search;
         let mut models = vec![("nominal", &search.nominal), ("refitted", &search.refitted)];

@@ -9,7 +9,8 @@ use super::side_view::{ChannelKind, SideView};
 use crate::format::{fixed, trimmed};
 use crate::plot::Span;
 
-/// Width of the drawing in its own pixels, and of the one for narrow windows, which shows letters as large in less than half of the room.
+/// Width of the drawing in its own pixels, and of the one for narrow windows, which shows letters as large in
+/// less than half of the room.
 pub(super) const WIDTH: f64 = 860.0;
 pub(super) const NARROW: f64 = 400.0;
 const MARGIN: f64 = 46.0;
@@ -28,18 +29,21 @@ pub(super) const POINT_LANE: f64 = 31.0;
 const NARROWEST: f64 = 46.0;
 const WITHOUT_EXTENT: f64 = 340.0;
 
-/// Labels of one kind beside a row at the most: what a page has room for. More would stand in dozens of lanes that nobody reads, and labels are placed pair by pair.
+/// Labels of one kind beside a row at the most: what a page has room for. More would stand in dozens of lanes
+/// that nobody reads, and labels are placed pair by pair.
 pub(super) const MOST_LABELS: usize = 60;
 
 /// Room a letter takes, px.
 const LETTER: f64 = 7.4;
 
-/// Room a text takes, in pixels at 13 px type. Digits and capitals are wider than the average letter; labels may stand apart but not overlap.
+/// Room a text takes, in pixels at 13 px type. Digits and capitals are wider than the average letter; labels
+/// may stand apart but not overlap.
 pub(super) fn text_width(text: &str) -> f64 {
     LETTER * text.chars().count() as f64 + 4.0
 }
 
-/// The text where there is room for it, px; else without its middle, for names of a kind differ at their ends.
+/// The text where there is room for it, px; else without its middle, for names of a kind differ at their
+/// ends.
 pub(super) fn shortened(text: &str, room: f64) -> String {
     if text_width(text) <= room {
         return text.to_owned();
@@ -158,8 +162,9 @@ impl Label {
     }
 }
 
-/// Gives each label the lane nearest to the body in which it meets no other label and no other's leader, and its own leader meets no label; keeps it
-/// within a drawing of this width, in which a text that is longer loses its middle. Returns how many lanes were needed.
+/// Gives each label the lane nearest to the body in which it meets no other label and no other's leader, and
+/// its own leader meets no label; keeps it within a drawing of this width, in which a text that is longer
+/// loses its middle. Returns how many lanes were needed.
 fn assign_lanes(labels: &mut [Label], width: f64) -> usize {
     labels.iter_mut().for_each(|label| label.text = shortened(&label.text, 0.92 * width));
     labels.sort_by(|a, b| (a.anchor.total_cmp(&b.anchor)).then_with(|| a.text.cmp(&b.text)));
@@ -173,7 +178,8 @@ fn assign_lanes(labels: &mut [Label], width: f64) -> usize {
         let label = &labels[*index];
         label.stretches(width).map(|stretch| covered(*index, stretch, &all)).into_iter().min()
     };
-    // The leaders of far lanes pass the near ones, so labels that are in no leader's way, and short ones, go near.
+    // The leaders of far lanes pass the near ones, so labels that are in no leader's way, and short ones, go
+    // near.
     let mut order = all.clone();
     order.sort_by(|a, b| labels[*a].width().total_cmp(&labels[*b].width()));
     order.sort_by_key(in_the_way);
@@ -203,8 +209,8 @@ struct Lanes {
 type Stretch = (f64, f64);
 
 impl Lanes {
-    /// The first of some stretches, and the nearest lane, in which no label and no leader is met and whose nearer lanes have no label in the leader's way;
-    /// where there is none, the first stretch in a new lane.
+    /// The first of some stretches, and the nearest lane, in which no label and no leader is met and whose
+    /// nearer lanes have no label in the leader's way; where there is none, the first stretch in a new lane.
     fn take(&mut self, stretches: &[Stretch], leader: Stretch) -> (usize, Stretch) {
         let lanes = self.taken.len();
         let mut all = stretches.iter().flat_map(|stretch| (0..=lanes).map(move |lane| (lane, *stretch)));
@@ -370,7 +376,8 @@ impl Layout {
     }
 }
 
-/// Px from a circle's middle at which the line to it runs beside the arrow that may end there, and beside others.
+/// Px from a circle's middle at which the line to it runs beside the arrow that may end there, and beside
+/// others.
 fn beside_arrows(anchor: f64, labels: &[Label]) -> f64 {
     const BESIDE: [f64; 4] = [11.0, 7.0, -7.0, -11.0];
     const APART: f64 = 4.0;

@@ -4,7 +4,8 @@ use jointscope_fixture::{BodyKind, Fixture, RigidBody};
 
 use crate::plot::Span;
 
-/// Both ends of every body, m. Blocks reach over their points and as far beyond the centre of gravity as before it, where no other body stands.
+/// Both ends of every body, m. Blocks reach over their points and as far beyond the centre of gravity as
+/// before it, where no other body stands.
 pub(super) fn outlines(fixture: &Fixture) -> Vec<(f64, f64)> {
     let hulls: Vec<(f64, f64)> = (0..fixture.bodies().len()).map(|body| hull(fixture, body)).collect();
     let outline = |(index, body): (usize, &jointscope_fixture::Body)| match &body.kind {

@@ -212,7 +212,8 @@ fn line_of_joint(joint: &Joint, highlight: bool, (from, to): (Place, Place), dra
     let room = if upwards { x - 14.0 } else { 2.0 * x.min(drawing - x) };
     let name = shortened(&joint.name, room);
     let width = text_width(&name);
-    // Beside a line that runs upwards, above one that runs along x; above a short joint stand the sensors at its ends.
+    // Beside a line that runs upwards, above one that runs along x; above a short joint stand the sensors at
+    // its ends.
     let place = match upwards {
         true => (x - 14.0 - 0.5 * width, y + 4.0),
         false if dx.abs() < width + 14.0 => (x, y + 24.0),

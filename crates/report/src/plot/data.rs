@@ -18,7 +18,8 @@ const BAND_DIGITS: usize = 4;
 /// Digits of an abscissa: neighbouring lines must stay apart however fine the resolution is.
 const ABSCISSA_DIGITS: usize = 9;
 
-/// All plots of a page in the order of their figures, with their columns of numbers; equal columns are kept once.
+/// All plots of a page in the order of their figures, with their columns of numbers; equal columns are kept
+/// once.
 #[derive(Debug, Default)]
 pub(crate) struct PlotBook {
     plots: Vec<PlotData>,
@@ -49,7 +50,8 @@ impl PlotBook {
 
     /// What the script reads.
     pub(crate) fn to_json(&self) -> String {
-        // Plain data without maps: serialising it cannot fail, and without plots the page would still be readable.
+        // Plain data without maps: serialising it cannot fail, and without plots the page would still be
+        // readable.
         let described = serde_json::to_string(&self.plots).unwrap_or_else(|_| "[]".to_owned());
         format!("{{\"plots\":{described},\n\"columns\":[{}]}}", self.columns.join(",\n"))
     }
@@ -64,7 +66,8 @@ struct PlotData {
     y: Axis,
     /// Ordinate range at first, when the plot does not show everything.
     first: Option<(f64, f64)>,
-    /// Whether `first` is to be found again among the lines in view when the reader zooms in: the percentiles.
+    /// Whether `first` is to be found again among the lines in view when the reader zooms in: the
+    /// percentiles.
     percentiles: Option<(f64, f64)>,
     /// Ordinate range at any zoom.
     held: Option<(f64, f64)>,

@@ -88,11 +88,13 @@ fn with_unit(number: String, unit: &str) -> String {
 
 /// Curves of which it is said what is seen of them, at the most.
 const TOLD: usize = 6;
-/// Per cent of a curve's values that lie between the two that are told of it, from the one end and from the other.
+/// Per cent of a curve's values that lie between the two that are told of it, from the one end and from the
+/// other.
 const MOSTLY: [usize; 2] = [5, 95];
 
-/// What is seen of the curves, for who does not see them: on a logarithmic axis where each is highest, and how often it exceeds a line drawn across, on
-/// a linear one between which values it mostly lies, over the averaging band where there is one. Of phases nothing: where they turn the magnitude peaks.
+/// What is seen of the curves, for who does not see them: on a logarithmic axis where each is highest, and
+/// how often it exceeds a line drawn across, on a linear one between which values it mostly lies, over the
+/// averaging band where there is one. Of phases nothing: where they turn the magnitude peaks.
 pub(super) fn seen(plot: &Plot, scale: &Scale) -> String {
     // Points in the colour of a reference mark lines of a curve.
     let is_mark = |series: &Series| series.style == Style::Points && series.role == Role::Reference;

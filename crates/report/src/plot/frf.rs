@@ -158,7 +158,8 @@ impl<'a> FrfPanes<'a> {
         self.coherence().into_iter().chain(self.residuals())
     }
 
-    /// What every curve leaves of the measured one over its noise, and both parts of what the last one leaves; nothing without curves or noise.
+    /// What every curve leaves of the measured one over its noise, and both parts of what the last one
+    /// leaves; nothing without curves or noise.
     fn residuals(&self) -> Vec<Plot> {
         let Some(last) = self.curves.last().filter(|_| !self.noise.is_empty()) else { return Vec::new() };
         let left = |curve: &Curve| -> Vec<Option<Complex64>> {
@@ -228,8 +229,9 @@ fn degrees(values: &[Option<Complex64>]) -> Vec<Option<f64>> {
 /// How far, °, a curve may be drawn beyond either end of its turn rather than jump over it.
 const BEYOND: f64 = 120.0;
 
-/// Moves the phases (degrees) of several curves, the measured one first, into one turn, cut where the fewest neighbouring lines jump over the cut: noise about ±180°
-/// would fill the pane. Beyond the cut a curve is followed a little way, and models are drawn beside what was measured.
+/// Moves the phases (degrees) of several curves, the measured one first, into one turn, cut where the fewest
+/// neighbouring lines jump over the cut: noise about ±180° would fill the pane. Beyond the cut a curve is
+/// followed a little way, and models are drawn beside what was measured.
 fn in_the_quietest_turn(curves: &mut [Vec<Option<f64>>]) {
     let jumps = |cut: f64| -> usize {
         let of = |values: &Vec<Option<f64>>| {

@@ -7,9 +7,10 @@ use super::{Axis, Mark, Plot, Style};
 pub(crate) enum YRange {
     /// All values, bands included.
     Full,
-    /// From the tenth to the ninetieth percentile of each series, widened by that span on either side but never past the values: a resonance or a few
-    /// noisy lines do not squash the rest. Gaussian scatter is drawn whole (±3.8 standard deviations). Bands do not count, reference lines always do.
-    /// The reader is told how many values lie outside and can have the full range.
+    /// From the tenth to the ninetieth percentile of each series, widened by that span on either side but
+    /// never past the values: a resonance or a few noisy lines do not squash the rest. Gaussian scatter is
+    /// drawn whole (±3.8 standard deviations). Bands do not count, reference lines always do. The reader is
+    /// told how many values lie outside and can have the full range.
     Robust,
     /// Between two ordinates, SI.
     Fixed { low: f64, high: f64 },
@@ -30,7 +31,8 @@ impl YRange {
         }
     }
 
-    /// Whole decades about the values: a model's sharp antiresonance does not squash them, and the axis is labelled with powers of ten.
+    /// Whole decades about the values: a model's sharp antiresonance does not squash them, and the axis is
+    /// labelled with powers of ten.
     pub(crate) fn decades(values: impl IntoIterator<Item = f64>) -> Self {
         match Span::of(values.into_iter().map(f64::log10)).0 {
             Some((low, high)) => {

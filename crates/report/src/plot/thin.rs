@@ -2,9 +2,10 @@
 
 /// Indices of the lines to draw, ascending, when there are more than `limit`; all of them otherwise.
 ///
-/// The abscissa is cut into buckets of equal width as drawn (equal ratio on a `logarithmic` axis), and in each bucket every series keeps its lowest and its
-/// highest line, so that no resonance and no antiresonance is lost, and its first gap, so that masked lines stay visible as gaps. First and last
-/// line are kept. A gap is a NaN. The result depends on nothing but the arguments; at most about `limit` lines remain, gaps apart.
+/// The abscissa is cut into buckets of equal width as drawn (equal ratio on a `logarithmic` axis), and in
+/// each bucket every series keeps its lowest and its highest line, so that no resonance and no antiresonance
+/// is lost, and its first gap, so that masked lines stay visible as gaps. First and last line are kept. A gap
+/// is a NaN. The result depends on nothing but the arguments; at most about `limit` lines remain, gaps apart.
 pub(super) fn kept_lines(abscissa: &[f64], series: &[&[f64]], limit: usize, logarithmic: bool) -> Vec<usize> {
     let lines = abscissa.len();
     if lines <= limit {

@@ -17,7 +17,8 @@ pub(super) fn case_number(index: usize, has_page: bool) -> Cell {
     }
 }
 
-/// Green where all is right (and something was `asked` for), red where a fault would mislead a reader, amber where it is of the second order.
+/// Green where all is right (and something was `asked` for), red where a fault would mislead a reader, amber
+/// where it is of the second order.
 pub(super) fn tone(faults: &[String], asked: bool, lesser: &[&str]) -> Option<Tone> {
     if faults.is_empty() {
         return asked.then_some(Tone::Ok);

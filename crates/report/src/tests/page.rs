@@ -1,4 +1,5 @@
-//! What a page promises whatever it is given: no network, no way out of its place for any text, the same bytes each time.
+//! What a page promises whatever it is given: no network, no way out of its place for any text, the same
+//! bytes each time.
 
 use maud::html;
 

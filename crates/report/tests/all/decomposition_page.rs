@@ -322,7 +322,8 @@ fn over_lines_that_hold_the_joints_mass_the_law_is_drawn_with_it_and_no_level_or
     let html = page(&fixture, &analysis);
     assert!(html.contains("they hold its inertia and are no stiffness of the joint alone"));
     assert!(!html.contains(level) && html.contains("law from all FRFs"));
-    // Without a mass the law is the fitted k on every line; with one it is far from it on low lines, where both blocks move as one and a joint's mass counts with theirs.
+    // Without a mass the law is the fitted k on every line; with one it is far from it on low lines, where
+    // both blocks move as one and a joint's mass counts with theirs.
     let k11 = |analysis: &Analysis, line: usize| analysis.fitted_at(line).unwrap().0.at(0, 0);
     let (low, high) = (10, analysis.spectrum.h41.lines.len() - 1);
     let heavy = [low, high].map(|line| k11(&analysis, line));

@@ -14,7 +14,8 @@ fn storeys(physics: &str) -> Fixture {
     Fixture::from_json(&with(&named, &format!(r#""physics": [{physics}]"#))).unwrap()
 }
 
-/// FRFs 1/1 and 2/1 with half a per cent of noise that is the same each time, changed by `change` (FRF, line's share of the band).
+/// FRFs 1/1 and 2/1 with half a per cent of noise that is the same each time, changed by `change` (FRF,
+/// line's share of the band).
 fn recorded(truth: &Fixture, change: impl Fn(usize, f64) -> Complex64) -> FrfSet {
     let pairs = [("1", "1"), ("2", "1")].map(|(o, i)| FrfPair::transverse(o, i));
     let lines = SpectralLines::even(20.0, 5.0, 77).unwrap();
@@ -147,7 +148,8 @@ fn where_nothing_is_left_out_the_page_says_so_and_shows_no_repaired_model() {
 
 #[test]
 fn a_delay_beside_a_ripple_is_said_not_to_be_all() {
-    // The phase grows over the band as a delay's does; what ripples beside it passes for errors in what lies outside the band.
+    // The phase grows over the band as a delay's does; what ripples beside it passes for errors in what lies
+    // outside the band.
     let odd = |frf: usize, share: f64| match frf {
         0 => Complex64::from_polar(1.0 + 0.2 * (9.0 * share).sin(), 0.6 * share * share),
         _ => Complex64::ONE,

@@ -115,7 +115,8 @@ fn tune(statement: &mut Value, target: f64) -> Result<f64, StructureError> {
     Ok(target)
 }
 
-/// A deformable steel bar of 0.3 to 0.6 m with a block at its end, points 1 and 2 on the bar, 3 and 4 on the block.
+/// A deformable steel bar of 0.3 to 0.6 m with a block at its end, points 1 and 2 on the bar, 3 and 4 on the
+/// block.
 pub(super) fn beam_and_block(name: &str, rng: &mut impl Rng) -> Result<Fixture, StructureError> {
     let (length, thickness) = (uniform(rng, 0.3, 0.6), uniform(rng, 0.01, 0.02));
     let width = uniform(rng, 0.025, 0.04);
@@ -129,7 +130,8 @@ pub(super) fn beam_and_block(name: &str, rng: &mut impl Rng) -> Result<Fixture, 
     } });
     let strip = width * uniform(rng, 0.003, 0.008).powi(3) / 12.0;
     let inner = -length * uniform(rng, 0.6, 0.95);
-    // The joint sits exactly at the bar's end, which is drawn apart from it: it is set back by five deviations.
+    // The joint sits exactly at the bar's end, which is drawn apart from it: it is set back by five
+    // deviations.
     let seat = -5e-4;
     let statement = json!({
         "name": name,

@@ -39,8 +39,9 @@ impl Family {
         Family::BeamAndBlock,
     ];
 
-    /// A random fixture of the family, with stated standard deviations: masses of 0.2 to 8 kg, its rigid bodies'
-    /// elastic modes between 15 and 1000 Hz, damping as modal ratios, Rayleigh constants or a loss factor.
+    /// A random fixture of the family, with stated standard deviations: masses of 0.2 to 8 kg, its rigid
+    /// bodies' elastic modes between 15 and 1000 Hz, damping as modal ratios, Rayleigh constants or a loss
+    /// factor.
     ///
     /// # Errors
     /// A fixture that cannot be built, which would be a mistake in the family.

@@ -1,4 +1,5 @@
-//! Random physics outside the vocabulary: one function draws place and size of each kind, `None` where the fixture or the recording has no place for it.
+//! Random physics outside the vocabulary: one function draws place and size of each kind, `None` where the
+//! fixture or the recording has no place for it.
 
 use super::Outside;
 use crate::random::{choice, log_uniform, sign, uniform};
@@ -7,13 +8,15 @@ use jointscope_spectra::FrfPair;
 use rand::Rng;
 use std::f64::consts::TAU;
 
-/// The kinds that [`Outside::draw`] counts, in their order: what a seed stands for must not change when a kind is added.
+/// The kinds that [`Outside::draw`] counts, in their order: what a seed stands for must not change when a
+/// kind is added.
 const COUNTED: [&str; 5] = ["inerter", "drift", "bypass", "gyroscope", "springpot"];
 
 impl Outside {
     /// Number of kinds that [`Outside::draw`] counts.
     pub const KINDS: usize = COUNTED.len();
-    /// Kinds that no effect of a fixture file is: those of [`Outside::draw`] but a bypass and a springpot, which files have names for, and more.
+    /// Kinds that no effect of a fixture file is: those of [`Outside::draw`] but a bypass and a springpot,
+    /// which files have names for, and more.
     pub const UNLISTED: [&str; 8] = [
         "cross_axis",
         "inerter",
@@ -25,13 +28,15 @@ impl Outside {
         "gyroscope",
     ];
 
-    /// A random one of kind `kind` (counted modulo [`Outside::KINDS`]); `None` where the fixture has no place for it or `recorded` has
-    /// one reference only. Whether it shows is for the caller to judge: sizes run over two decades.
+    /// A random one of kind `kind` (counted modulo [`Outside::KINDS`]); `None` where the fixture has no place
+    /// for it or `recorded` has one reference only. Whether it shows is for the caller to judge: sizes run
+    /// over two decades.
     pub fn draw(rng: &mut impl Rng, fixture: &Fixture, kind: usize, recorded: &[FrfPair]) -> Option<Self> {
         Self::draw_kind(rng, fixture, COUNTED[kind % COUNTED.len()], recorded)
     }
 
-    /// A random one of the kind of this name; `None` as of [`Outside::draw`], and of a kind that there is not.
+    /// A random one of the kind of this name; `None` as of [`Outside::draw`], and of a kind that there is
+    /// not.
     pub fn draw_kind(
         rng: &mut impl Rng,
         fixture: &Fixture,

@@ -12,15 +12,16 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Outside {
-    /// A force proportional to the relative acceleration across a joint: the inertance (kg) of a flywheel on a rack.
+    /// A force proportional to the relative acceleration across a joint: the inertance (kg) of a flywheel on
+    /// a rack.
     Inerter {
         /// The joint.
         joint: String,
         /// Inertance, kg.
         inertance: f64,
     },
-    /// A joint that changed between two positions of the hammer: FRFs of one reference are those of a joint whose
-    /// stiffness is another.
+    /// A joint that changed between two positions of the hammer: FRFs of one reference are those of a joint
+    /// whose stiffness is another.
     Drift {
         /// The joint.
         joint: String,
@@ -38,14 +39,16 @@ pub enum Outside {
         /// Its stiffness, N/m.
         stiffness: f64,
     },
-    /// A rotor within a body: a force on its transverse motion proportional to its rotation rate, and the opposite moment.
+    /// A rotor within a body: a force on its transverse motion proportional to its rotation rate, and the
+    /// opposite moment.
     Gyroscope {
         /// The point about which it couples.
         point: String,
         /// The coupling, N·s/rad.
         coupling: f64,
     },
-    /// A force across a joint proportional to (iω)^order of the relative translation, between a spring and a dashpot.
+    /// A force across a joint proportional to (iω)^order of the relative translation, between a spring and a
+    /// dashpot.
     Springpot {
         /// The joint.
         joint: String,
@@ -54,8 +57,8 @@ pub enum Outside {
         /// Order of the derivative, between 0 and 1.
         order: f64,
     },
-    /// A sensor that also reads motion across the plane, of a structure that a tilted hammer drives that way too. Across the plane the joints
-    /// have another stiffness, hence other resonances.
+    /// A sensor that also reads motion across the plane, of a structure that a tilted hammer drives that way
+    /// too. Across the plane the joints have another stiffness, hence other resonances.
     CrossAxis {
         /// The point whose response's sensor it is.
         response: String,
@@ -105,7 +108,8 @@ pub enum Outside {
 }
 
 impl Outside {
-    /// What an analyst knows of it and states, as effects: of a second bending mode the first, of all else nothing.
+    /// What an analyst knows of it and states, as effects: of a second bending mode the first, of all else
+    /// nothing.
     pub fn known(&self) -> Vec<Effect> {
         match self {
             Outside::SecondBending { body, frequency, damping_ratio } => {

@@ -117,10 +117,12 @@ fn table(assembly: &mut Assembly, held: Vec<(Row, &Support)>, mass: f64, frequen
     }
 }
 
-/// A string of `mass` (kg) from `tied` to ground, its resonances with both ends held at multiples of `frequency` (Hz).
+/// A string of `mass` (kg) from `tied` to ground, its resonances with both ends held at multiples of
+/// `frequency` (Hz).
 ///
-/// Its motion is a straight line from the body to ground, which has the static stiffness T/ℓ = 4·m·f², and sines of index n. A sine is a resonator
-/// of mass 2m/(nπ)² at n·f; all of them together weigh m/3, as the straight line does.
+/// Its motion is a straight line from the body to ground, which has the static stiffness T/ℓ = 4·m·f², and
+/// sines of index n. A sine is a resonator of mass 2m/(nπ)² at n·f; all of them together weigh m/3, as the
+/// straight line does.
 fn cable(assembly: &mut Assembly, tied: &Row, mass: f64, frequency: f64, damping_ratio: f64) {
     assembly.spring(tied, 4.0 * mass * frequency * frequency, Law::ELASTIC);
     let mut rest = mass / 3.0;

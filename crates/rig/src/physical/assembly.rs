@@ -3,7 +3,8 @@
 use super::{Row, Station};
 use num_complex::Complex64;
 
-/// How an element's restoring force follows its static stiffness: K(s) = K·(1 + ratio·sτ/(1 + sτ) + iη), or K·sᵅ where it has an exponent.
+/// How an element's restoring force follows its static stiffness: K(s) = K·(1 + ratio·sτ/(1 + sτ) + iη), or
+/// K·sᵅ where it has an exponent.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Law {
     /// Loss factor η of structural damping (eq 17).
@@ -123,7 +124,8 @@ impl Assembly {
         dense(self.order, &self.stiffness)
     }
 
-    /// The assembly on other coordinates, of which each of `basis` is a shape over the present ones: every matrix A becomes VᵀAV.
+    /// The assembly on other coordinates, of which each of `basis` is a shape over the present ones: every
+    /// matrix A becomes VᵀAV.
     pub(crate) fn on_shapes(&self, basis: &[Vec<f64>]) -> Assembly {
         let count = basis.len();
         let turned = |additions: &Additions| -> Additions {

@@ -47,8 +47,8 @@ impl UniformBar {
         UniformBar { centre, length: (12.0 * inertia / mass).sqrt() }
     }
 
-    /// Deflection (–) and slope (1/m) at abscissa `x` of the mode of unit mean square; beyond the bar's ends the
-    /// shape goes on along its tangent.
+    /// Deflection (–) and slope (1/m) at abscissa `x` of the mode of unit mean square; beyond the bar's ends
+    /// the shape goes on along its tangent.
     pub(crate) fn mode(&self, order: Order, x: f64) -> (f64, f64) {
         let u = (x - self.centre) / self.length;
         let inside = u.clamp(-0.5, 0.5);

@@ -3,8 +3,8 @@
 use super::{Assembly, Law, Row, Station};
 use crate::StructureError;
 
-/// A straight beam element of uniform section: Timoshenko's, or Euler–Bernoulli's where the shear stiffness is
-/// infinite and the rotary inertia zero.
+/// A straight beam element of uniform section: Timoshenko's, or Euler–Bernoulli's where the shear stiffness
+/// is infinite and the rotary inertia zero.
 ///
 /// Everything follows from the element held at its left end and loaded at its right end by a force F and a
 /// moment M: deflection and rotation at x are
@@ -23,7 +23,8 @@ pub struct BeamElement {
     pub rotary_inertia: f64,
 }
 
-/// Abscissae on (0, 1) and weights of the four-point Gauss rule, exact to degree seven: products of cubics need six.
+/// Abscissae on (0, 1) and weights of the four-point Gauss rule, exact to degree seven: products of cubics
+/// need six.
 const GAUSS: [(f64, f64); 4] = [
     (0.069_431_844_202_973_71, 0.173_927_422_568_726_93),
     (0.330_009_478_207_571_87, 0.326_072_577_431_273_07),

@@ -23,9 +23,9 @@ enum Shape {
 }
 
 impl Bodies {
-    /// Adds the bodies' own coordinates, first of all those of the bodies without effects, in the order of the
-    /// fixture, then the bending coordinates of blocks that `effects` make flexible and those of `beyond` what effects
-    /// can say; with masses and, for deformable bodies, elements that carry `loss_factor`.
+    /// Adds the bodies' own coordinates, first of all those of the bodies without effects, in the order of
+    /// the fixture, then the bending coordinates of blocks that `effects` make flexible and those of `beyond`
+    /// what effects can say; with masses and, for deformable bodies, elements that carry `loss_factor`.
     pub(crate) fn assemble(
         assembly: &mut Assembly,
         fixture: &Fixture,

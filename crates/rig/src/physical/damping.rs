@@ -1,4 +1,5 @@
-//! Damping of the laboratory's structures: loss factors, Rayleigh's matrix, and the matrix that gives modes their stated ratios.
+//! Damping of the laboratory's structures: loss factors, Rayleigh's matrix, and the matrix that gives modes
+//! their stated ratios.
 
 use super::{Assembly, Row};
 use crate::StructureError;
@@ -18,8 +19,9 @@ pub(crate) fn loss_factor(damping: &Damping) -> f64 {
     }
 }
 
-/// Adds the viscous damping of the fixture to `assembly`: that of `free`, the assembly without effects and supports, or of `supported`, the same on its supports,
-/// on the coordinates that all share, which come first in each.
+/// Adds the viscous damping of the fixture to `assembly`: that of `free`, the assembly without effects and
+/// supports, or of `supported`, the same on its supports, on the coordinates that all share, which come first
+/// in each.
 pub(crate) fn add_viscous(
     assembly: &mut Assembly,
     free: &Assembly,
@@ -40,8 +42,9 @@ pub(crate) fn add_viscous(
     Ok(())
 }
 
-/// C = Σ (2ζ_r ω_r − φᵀC_sφ)(Mφ_r)(Mφ_r)ᵀ over the elastic modes of `supported`, whose supports' dashpots C_s are in the structure already and count among what a
-/// test reads; rigid modes are undamped, and so are those that strain next to nothing of the `free` assembly, unless all do.
+/// C = Σ (2ζ_r ω_r − φᵀC_sφ)(Mφ_r)(Mφ_r)ᵀ over the elastic modes of `supported`, whose supports' dashpots C_s
+/// are in the structure already and count among what a test reads; rigid modes are undamped, and so are those
+/// that strain next to nothing of the `free` assembly, unless all do.
 fn modal_matrix(
     supported: &Assembly,
     free: &Assembly,

@@ -1,4 +1,5 @@
-//! Where the nodes of a beam body lie: at everything that is attached to it, and as close between as its bending waves ask for.
+//! Where the nodes of a beam body lie: at everything that is attached to it, and as close between as its
+//! bending waves ask for.
 
 use jointscope_fixture::{BeamBody, BodyKind, Effect, EffectKind, Fixture, Place};
 use std::f64::consts::TAU;
@@ -6,15 +7,16 @@ use std::f64::consts::TAU;
 /// Fewest and most elements of a deformable body between its attachments.
 const ELEMENTS: [f64; 2] = [8.0, 64.0];
 
-/// Element size in units of the bending wave (length over 2π) at [`HIGHEST`]: a natural frequency is then off by
-/// 1e-7 or so. A finer mesh of a stiff body would only drown its slow modes in rounding.
+/// Element size in units of the bending wave (length over 2π) at [`HIGHEST`]: a natural frequency is then off
+/// by 1e-7 or so. A finer mesh of a stiff body would only drown its slow modes in rounding.
 const SIZE: f64 = 0.1;
 
-/// Frequency in Hz up to which stiff bodies are meshed finely; the most flexible ones reach the most elements.
+/// Frequency in Hz up to which stiff bodies are meshed finely; the most flexible ones reach the most
+/// elements.
 const HIGHEST: f64 = 4000.0;
 
-/// Breaks closer than this fraction of the element size share a node: very short elements would spoil the modes
-/// of the damping matrix.
+/// Breaks closer than this fraction of the element size share a node: very short elements would spoil the
+/// modes of the damping matrix.
 const MERGE: f64 = 0.2;
 
 /// Abscissae of the nodes of every body, in the order of the fixture; none for a rigid body.

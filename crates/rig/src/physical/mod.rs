@@ -1,8 +1,8 @@
 //! The structure itself: coordinates, elements and their laws, and how a fixture becomes one.
 //!
-//! A [`Structure`] is built of [`Assembly`] elements: every element acts on [`Station`]s, and a station says how
-//! the transverse motion and the rotation of a place follow from the coordinates. Rigid constraints are thereby
-//! eliminated exactly.
+//! A [`Structure`] is built of [`Assembly`] elements: every element acts on [`Station`]s, and a station says
+//! how the transverse motion and the rotation of a place follow from the coordinates. Rigid constraints are
+//! thereby eliminated exactly.
 
 mod assembly;
 mod bar_mode;

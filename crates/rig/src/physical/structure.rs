@@ -36,7 +36,8 @@ impl Structure {
         Ok(Self::with_modes(fixture, &[])?.0)
     }
 
-    /// The same with bending modes of blocks that no effect of a fixture describes, and the bodies, which say how any place moves.
+    /// The same with bending modes of blocks that no effect of a fixture describes, and the bodies, which say
+    /// how any place moves.
     pub(crate) fn with_modes(
         fixture: &Fixture,
         modes: &[BodyMode<'_>],
@@ -74,8 +75,8 @@ impl Structure {
         Ok((structure, bodies))
     }
 
-    /// The same places on another assembly: `moves` says by the point's name how its motion, stated or as mounted, follows from that
-    /// assembly's coordinates.
+    /// The same places on another assembly: `moves` says by the point's name how its motion, stated or as
+    /// mounted, follows from that assembly's coordinates.
     pub(crate) fn on(&self, assembly: Assembly, moves: impl Fn(&str, &Row) -> Row) -> Self {
         let on = |places: &BTreeMap<String, Station>| {
             let moved = places.iter().map(|(name, station)| {

@@ -58,7 +58,8 @@ fn a_deformable_body_of_a_fixture_has_the_same_frequencies_wherever_its_nodes_fa
     }
 }
 
-/// Timoshenko's cantilever: the lowest root of the 4×4 frequency determinant, by bisection on its exact solution.
+/// Timoshenko's cantilever: the lowest root of the 4×4 frequency determinant, by bisection on its exact
+/// solution.
 fn timoshenko_cantilever(length: f64, ei: f64, ga: f64, m: f64, rho_i: f64, below: f64) -> f64 {
     let determinant = |omega: f64| {
         // EI·GA·v'''' + ω²(ρI·GA + m·EI)·v'' + (ρI·ω² − GA)·m·ω²·v = 0, with v = e^{λx}.

@@ -47,7 +47,8 @@ fn the_joint_is_about_half_as_stiff_as_believed() {
 
 #[test]
 fn the_stated_static_stiffness_is_what_the_structure_shows_when_block_a_is_held() {
-    // Block A held, block B loaded by a unit force at point 3: its slow displacement there is the flexibility.
+    // Block A held, block B loaded by a unit force at point 3: its slow displacement there is the
+    // flexibility.
     let test = GluedJoint::new(SEED).unwrap();
     let flexibility = {
         let [_, k] = test.static_stiffness().unwrap();
@@ -94,8 +95,8 @@ fn the_effects_of_the_fixture_file_describe_the_glued_structure_down_to_its_nois
         println!("{count} effects: chi2/dof {:.2}", chi2 / dof);
         ratios.push(chi2 / dof);
     }
-    // What is left is the strip's rotary inertia, a few ten-thousandths of the blocks': no effect describes it, and
-    // the tolerances of the blocks cover it.
+    // What is left is the strip's rotary inertia, a few ten-thousandths of the blocks': no effect describes
+    // it, and the tolerances of the blocks cover it.
     assert!(ratios[0] > 1e5 && ratios[effects.len()] < 1.5, "{ratios:?}");
 }
 

@@ -41,7 +41,8 @@ fn a_sum_of_modes_without_errors_gives_the_structures_own_frfs() {
             let own = frfs(&fixture, &pairs, &lines(), Instrument::AsDescribed).unwrap();
             let summed = ModalErrors::default().frfs(&fixture, &pairs, &lines(), Instrument::AsDescribed);
             let error = off(&summed.unwrap(), &own);
-            // A strip with mass has modes at 10⁴ times the lines' frequencies, against whose eigenvalues the lowest lose digits.
+            // A strip with mass has modes at 10⁴ times the lines' frequencies, against whose eigenvalues the
+            // lowest lose digits.
             let allowed = if kind == EffectKind::JointMass { 1e-7 } else { 1e-9 };
             assert!(error < allowed, "{family:?}, {}: {error:.1e}", kind.name());
         }

@@ -149,7 +149,8 @@ fn supports_on_a_table_are_springs_in_series_with_it() {
 
 #[test]
 fn a_second_bending_mode_is_that_of_the_uniform_bar() {
-    // A block by itself, read at its end: rigid motion and the second mode, whose ends deflect by 2 where the mean square is one.
+    // A block by itself, read at its end: rigid motion and the second mode, whose ends deflect by 2 where the
+    // mean square is one.
     let fixture = Fixture::from_json(
         r#"{
           "bodies": { "A": { "mass": 1.2, "inertia": 4e-3, "x_cg": 0.0 } },

@@ -16,7 +16,8 @@ fn line_layout(form: &Form) -> &'static [usize] {
     }
 }
 
-/// Reads the values of a dataset 58 and its closing delimiter: all that the header states, or fewer whole points.
+/// Reads the values of a dataset 58 and its closing delimiter: all that the header states, or fewer whole
+/// points.
 pub(super) fn read(cursor: &mut Cursor, form: &Form) -> Result<Values, ReadError> {
     let per_point = form.values_per_point();
     // A count beyond all bounds reads as one that the file cannot fulfil.
@@ -29,7 +30,8 @@ pub(super) fn read(cursor: &mut Cursor, form: &Form) -> Result<Values, ReadError
     Ok(Values::from_interleaved(numbers, form))
 }
 
-/// Reads up to `expected` numbers, `per_point` of them a point, laid out in lines of `widths`, and the closing delimiter, which is handed back.
+/// Reads up to `expected` numbers, `per_point` of them a point, laid out in lines of `widths`, and the
+/// closing delimiter, which is handed back.
 pub(super) fn numbers<'a>(
     cursor: &mut Cursor<'a>,
     widths: &'static [usize],
@@ -59,8 +61,8 @@ pub(super) fn numbers<'a>(
     Err(cursor.truncated("data or the `    -1` line that closes the dataset"))
 }
 
-/// Reads the lines that hold the next `count` numbers, laid out in `widths`; what more a last line holds is left aside. The closing
-/// delimiter must not come before.
+/// Reads the lines that hold the next `count` numbers, laid out in `widths`; what more a last line holds is
+/// left aside. The closing delimiter must not come before.
 pub(super) fn some_numbers(
     cursor: &mut Cursor,
     widths: &'static [usize],
@@ -123,8 +125,8 @@ impl LineReader<'_> {
         Err(cursor.error(line, TextProblem::NotANumber(excerpt(word))))
     }
 
-    /// Reads a line by its columns. Unless `touching`, a number that runs into an unsigned one counts as a misfit: it is
-    /// far likelier that a longer number has been cut in two.
+    /// Reads a line by its columns. Unless `touching`, a number that runs into an unsigned one counts as a
+    /// misfit: it is far likelier that a longer number has been cut in two.
     fn by_columns(&mut self, text: &[u8], touching: bool) -> Result<(), Misfit> {
         let mut start = 0;
         let mut blank = None;
@@ -194,7 +196,8 @@ impl LineReader<'_> {
             if start == 0 && at == word.len() {
                 return Err(None);
             }
-            // An exponent without its letter is only found by its columns: `1.00000-100` was tried as one word before.
+            // An exponent without its letter is only found by its columns: `1.00000-100` was tried as one
+            // word before.
             self.numbers.push(number::parse(&word[start..at]).map_err(Some)?);
             start = at;
         }

@@ -119,8 +119,8 @@ fn decode(payload: &[u8], form: &Form, layout: Layout, order: ByteOrder) -> Resu
     Ok(Values::from_interleaved(numbers, form))
 }
 
-/// Decodes block by block and looks for NaN while the block is still in cache: a pass over the whole data afterwards would
-/// cost as much as the decoding.
+/// Decodes block by block and looks for NaN while the block is still in cache: a pass over the whole data
+/// afterwards would cost as much as the decoding.
 fn decode_blocks<S: Copy, T>(
     stored: &[S],
     decode: impl Fn(S) -> T,

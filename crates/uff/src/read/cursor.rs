@@ -77,13 +77,14 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Where the text goes on if a closing delimiter stands at byte `end` of binary data. It should follow the data directly;
-    /// many programs write a line end first.
+    /// Where the text goes on if a closing delimiter stands at byte `end` of binary data. It should follow
+    /// the data directly; many programs write a line end first.
     pub(super) fn after_closing_delimiter(&self, end: usize) -> Option<usize> {
         let tail = self.bytes.get(end..)?;
         let line_ends = tail.iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
         let mut cursor = Cursor { position: end + line_ends, ..*self };
-        // A delimiter line is at most 80 columns and some: no search through megabytes of binary data for its end.
+        // A delimiter line is at most 80 columns and some: no search through megabytes of binary data for its
+        // end.
         let line = Cursor { bytes: self.bytes.get(..cursor.position + 200).unwrap_or(self.bytes), ..cursor }
             .next_line()?;
         if !is_delimiter(line.bytes) {

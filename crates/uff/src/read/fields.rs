@@ -23,7 +23,8 @@ pub(super) enum Column {
 pub(super) struct Cut<'a, const N: usize> {
     /// Number and text fields in order, without blanks around them.
     pub(super) fields: [&'a str; N],
-    /// Every number is there, none is cut in two, and the gaps are blank: the columns are those of the specification.
+    /// Every number is there, none is cut in two, and the gaps are blank: the columns are those of the
+    /// specification.
     pub(super) clean: bool,
 }
 
@@ -94,7 +95,8 @@ pub(super) struct BinaryForm {
 }
 
 impl BinaryForm {
-    /// Reads `2I6, 2I12`, or the same numbers anywhere with blanks between. The counts may be missing: they are only a hint.
+    /// Reads `2I6, 2I12`, or the same numbers anywhere with blanks between. The counts may be missing: they
+    /// are only a hint.
     pub(super) fn read(form: &[u8]) -> Option<Self> {
         let form = line_text(form);
         let columns = [Column::Number(6), Column::Number(6), Column::Number(12), Column::Number(12)];

@@ -1,4 +1,5 @@
-//! Datasets 15, 18, 82, 151, 2411, 2412 and 2420, each from behind its identification line to behind its closing delimiter.
+//! Datasets 15, 18, 82, 151, 2411, 2412 and 2420, each from behind its identification line to behind its
+//! closing delimiter.
 
 use super::cursor::{Cursor, Line, excerpt, is_delimiter};
 use super::fields::{columns_of, line_text};

@@ -165,7 +165,8 @@ fn is_integer(word: &str) -> bool {
     word.parse::<i64>().is_ok()
 }
 
-/// Record 6 by its blanks: ten words with single-word entity names, or eight numbers where the names are blank.
+/// Record 6 by its blanks: ten words with single-word entity names, or eight numbers where the names are
+/// blank.
 fn by_blanks_identity(text: &str) -> Option<[&str; 10]> {
     let mut words = [""; 10];
     let mut count = 0;

@@ -1,11 +1,13 @@
-//! Records of whole numbers and of reals outside dataset 58: by their columns, or by their blanks where a writer was off.
+//! Records of whole numbers and of reals outside dataset 58: by their columns, or by their blanks where a
+//! writer was off.
 
 use super::ascii;
 use super::cursor::{Cursor, Line};
 use super::fields::{columns_of, line_text};
 use crate::ReadError;
 
-/// The whole numbers of a line in columns of `width`: those that fit, by blanks where the columns cut a number.
+/// The whole numbers of a line in columns of `width`: those that fit, by blanks where the columns cut a
+/// number.
 pub(super) fn of_line(
     cursor: &Cursor,
     line: Line,

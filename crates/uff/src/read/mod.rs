@@ -1,4 +1,5 @@
-//! From bytes to functions: the frame of delimiters around the datasets. The datasets' insides are in the submodules.
+//! From bytes to functions: the frame of delimiters around the datasets. The datasets' insides are in the
+//! submodules.
 
 mod ascii;
 mod binary;
@@ -21,9 +22,9 @@ use identification::Identification;
 /// Reads every function (dataset 58 and 58b), the geometry and the mode shapes of a universal file.
 ///
 /// # Errors
-/// A [`ReadError`] naming the dataset and the line or byte for anything in a function or in the units that is damaged, missing or not finite;
-/// functions are read whole or not at all. A damaged dataset of geometry or shapes is passed and told in [`UffFile::unreadable`]: it says
-/// nothing of the functions beside it.
+/// A [`ReadError`] naming the dataset and the line or byte for anything in a function or in the units that is
+/// damaged, missing or not finite; functions are read whole or not at all. A damaged dataset of geometry or
+/// shapes is passed and told in [`UffFile::unreadable`]: it says nothing of the functions beside it.
 pub fn read(bytes: &[u8]) -> Result<UffFile, ReadError> {
     let mut cursor = Cursor::new(bytes);
     let mut file = UffFile::default();

@@ -11,8 +11,8 @@ pub(super) enum BadNumber {
     NotFinite,
 }
 
-/// Value of a number with blanks around it, correctly rounded. Exponent letters e, E, d and D; three exponent digits may
-/// stand without a letter (`1.00000-100`), as Fortran prints them where the letter finds no room.
+/// Value of a number with blanks around it, correctly rounded. Exponent letters e, E, d and D; three exponent
+/// digits may stand without a letter (`1.00000-100`), as Fortran prints them where the letter finds no room.
 pub(super) fn parse(text: &[u8]) -> Result<f64, BadNumber> {
     let text = std::str::from_utf8(text.trim_ascii()).map_err(|_| BadNumber::NotANumber)?;
     let value: f64 = match text.parse() {

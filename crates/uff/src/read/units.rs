@@ -38,7 +38,8 @@ pub(super) fn read(cursor: &mut Cursor) -> Result<Units, ReadError> {
     })
 }
 
-/// Record 1: `I10, 20A1, I10`. Descriptions longer than 20 characters push the temperature mode out of its columns.
+/// Record 1: `I10, 20A1, I10`. Descriptions longer than 20 characters push the temperature mode out of its
+/// columns.
 fn record1(text: &str) -> Option<(i32, &str, TemperatureMode)> {
     let by_columns = cut::<3>(text, &[Column::Number(10), Column::Text(20), Column::Number(10)]);
     let mode = |word: &str| match word {

@@ -13,7 +13,8 @@ pub(super) struct Values {
 }
 
 impl Values {
-    /// Takes apart numbers that follow one another as in the file: abscissa if uneven, real part, imaginary part.
+    /// Takes apart numbers that follow one another as in the file: abscissa if uneven, real part, imaginary
+    /// part.
     pub(super) fn from_interleaved(numbers: Vec<f64>, form: &Form) -> Self {
         let abscissa = |stride| numbers.iter().copied().step_by(stride).collect();
         match (form.even, form.complex) {

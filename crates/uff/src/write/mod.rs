@@ -11,8 +11,8 @@ pub use write_error::{WriteError, WriteProblem};
 use crate::{Abscissa, Data, Dataset58, Encoding, Precision, Units};
 use layout::{DELIMITER, values_per_point};
 
-/// Writes functions as one universal file, each in its own precision and encoding, in the given order. A dataset 164
-/// precedes the first function and every function whose units differ from those before.
+/// Writes functions as one universal file, each in its own precision and encoding, in the given order. A
+/// dataset 164 precedes the first function and every function whose units differ from those before.
 ///
 /// ```
 /// use jointscope_uff::{Abscissa, Data, Dataset58, write};
@@ -22,8 +22,9 @@ use layout::{DELIMITER, values_per_point};
 /// ```
 ///
 /// # Errors
-/// A [`WriteError`] naming the function, counted from 1, that a universal file cannot hold: a value that is not finite, text
-/// or a number wider than its columns, an abscissa of another length than the data. Nothing is cut off or rounded to fit.
+/// A [`WriteError`] naming the function, counted from 1, that a universal file cannot hold: a value that is
+/// not finite, text or a number wider than its columns, an abscissa of another length than the data. Nothing
+/// is cut off or rounded to fit.
 pub fn write(datasets: &[Dataset58]) -> Result<Vec<u8>, WriteError> {
     let mut out = Vec::with_capacity(datasets.iter().map(size_estimate).sum());
     let mut in_force = None;

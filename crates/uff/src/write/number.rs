@@ -16,9 +16,9 @@ pub(super) fn push_double_mark(out: &mut Vec<u8>, value: f64, width: usize, deci
     printed.push(out, width);
 }
 
-/// Appends an abscissa value in 13 columns. `E13.5` is kept where it is exact; otherwise the spelling that is nearest to the
-/// value while one column stays blank, for a frequency step of 1/51.2 Hz has more digits than `E13.5` shows and 10⁵ lines
-/// multiply what is lost.
+/// Appends an abscissa value in 13 columns. `E13.5` is kept where it is exact; otherwise the spelling that is
+/// nearest to the value while one column stays blank, for a frequency step of 1/51.2 Hz has more digits than
+/// `E13.5` shows and 10⁵ lines multiply what is lost.
 pub(super) fn push_abscissa(out: &mut Vec<u8>, value: f64) {
     let mut best = Printed::default();
     best.scientific(value, 5, b'E');

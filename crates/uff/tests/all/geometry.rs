@@ -1,4 +1,5 @@
-//! Geometry, shapes and header beside the functions: as pyuff writes them, as finite-element programs do, and damaged.
+//! Geometry, shapes and header beside the functions: as pyuff writes them, as finite-element programs do, and
+//! damaged.
 
 use jointscope_uff::{
     Analysis, CoordinateSystem, Element, GridPoint, SystemKind, TraceLine, UffFile, ValueLocation, read,
@@ -51,7 +52,8 @@ fn coordinate_systems_are_rows_of_axes_and_an_origin() {
         axes,
         origin,
     };
-    // 18: x along the second axis, a point of the xz plane along the third, so y = z × x points along the negative first.
+    // 18: x along the second axis, a point of the xz plane along the third, so y = z × x points along the
+    // negative first.
     assert_eq!(
         file.systems[0],
         system(7, "SIDE", [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]], [100.0, 0.0, 0.0])

@@ -42,7 +42,8 @@ fn every_truncation_is_survived() {
     (0..bytes.len()).for_each(|length| swallow(&bytes[..length]));
 }
 
-/// Between two datasets a file that was cut is a whole one; what its functions then lack, `jointscope-recordings` tells.
+/// Between two datasets a file that was cut is a whole one; what its functions then lack,
+/// `jointscope-recordings` tells.
 #[test]
 fn a_file_that_is_cut_inside_a_dataset_is_refused_and_only_there() {
     let bytes = valid_file();

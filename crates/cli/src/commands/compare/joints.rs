@@ -102,7 +102,8 @@ impl Listed {
         Ok(found)
     }
 
-    /// The directory's last name, the whole path where another directory shares it; with the joint behind it where one is named.
+    /// The directory's last name, the whole path where another directory shares it; with the joint behind it
+    /// where one is named.
     fn name(&self, named: &Named) -> String {
         let short = |path: &Path| path.file_name().map(|name| name.to_string_lossy().into_owned());
         let own = short(&named.directory);
@@ -124,7 +125,8 @@ impl Found {
         self.places.get(place).into_iter().flatten().copied()
     }
 
-    /// Says what the joints are of that a name stands for; refuses a joint of which it is said already, by itself and with all of its directory.
+    /// Says what the joints are of that a name stands for; refuses a joint of which it is said already, by
+    /// itself and with all of its directory.
     pub(super) fn say(&mut self, place: usize, source: Source) -> Result<(), Refusal> {
         for &joint in self.places.get(place).into_iter().flatten() {
             let joint = &mut self.joints[joint];

@@ -14,7 +14,8 @@ use crate::values::band;
 /// Options of `jointscope prove`.
 #[derive(Debug, Args)]
 pub(crate) struct ProveArguments {
-    /// Make so many new cases [default: the shipped cases; 40 where only a seed is given; 8 of real recordings].
+    /// Make so many new cases [default: the shipped cases; 40 where only a seed is given; 8 of real
+    /// recordings].
     #[arg(long, value_name = "N")]
     pub cases: Option<usize>,
     /// Seed of new cases [default: 1].
@@ -23,25 +24,30 @@ pub(crate) struct ProveArguments {
     /// Make so many further cases of one effect so small that it may be missed, for the detection curve.
     #[arg(long, value_name = "N")]
     pub graded: Option<usize>,
-    /// Make so many cases whose recording comes from a solid [default: a twentieth of --cases; none of these with --family].
+    /// Make so many cases whose recording comes from a solid [default: a twentieth of --cases; none of these
+    /// with --family].
     #[arg(long, value_name = "N")]
     pub solid: Option<usize>,
     /// Make so many cases of hits over time [default: as --solid].
     #[arg(long, value_name = "N")]
     pub struck: Option<usize>,
-    /// Make so many cases whose recording comes from a solid with nothing idealised, so that no fixture is right to the noise [default: as --solid].
+    /// Make so many cases whose recording comes from a solid with nothing idealised, so that no fixture is
+    /// right to the noise [default: as --solid].
     #[arg(long, value_name = "N")]
     pub solid_as_is: Option<usize>,
     /// Make so many cases of lumped structures with an error in every mode [default: as --solid].
     #[arg(long, value_name = "N")]
     pub modal_errors: Option<usize>,
-    /// Make so many lumped cases of which the one hidden thing is a flaw of the measuring chain [default: as --solid].
+    /// Make so many lumped cases of which the one hidden thing is a flaw of the measuring chain [default:
+    /// as --solid].
     #[arg(long, value_name = "N")]
     pub channel_flaws: Option<usize>,
-    /// Make so many lumped cases with a load path beside a joint or to ground, or footings that turn [default: as --solid].
+    /// Make so many lumped cases with a load path beside a joint or to ground, or footings that turn
+    /// [default: as --solid].
     #[arg(long, value_name = "N")]
     pub load_paths: Option<usize>,
-    /// Make so many lumped cases of physics that no effect of a fixture file is, small and large [default: as --solid].
+    /// Make so many lumped cases of physics that no effect of a fixture file is, small and large [default:
+    /// as --solid].
     #[arg(long, value_name = "N")]
     pub unknown_physics: Option<usize>,
     /// A text, such as the current commit's hash, from which a quarter of the cases is drawn afresh.
@@ -50,7 +56,8 @@ pub(crate) struct ProveArguments {
     /// Take the one case of this number.
     #[arg(long, value_name = "INDEX")]
     pub only: Option<usize>,
-    /// The folder of the shipped cases [default: fixtures/concealed around the current folder or the program].
+    /// The folder of the shipped cases [default: fixtures/concealed around the current folder or the
+    /// program].
     #[arg(long, value_name = "DIR")]
     pub shipped: Option<PathBuf>,
     /// Assemblies to draw from [default: all but beam-and-block].
@@ -65,8 +72,8 @@ pub(crate) struct ProveArguments {
     /// Print the scores as JSON.
     #[arg(long)]
     pub json: bool,
-    /// A directory for report.html, seal.json, answers.json, baselines.json, proof.json and timing.json, and cases/NNN with the files and
-    /// the page of every case.
+    /// A directory for report.html, seal.json, answers.json, baselines.json, proof.json and timing.json, and
+    /// cases/NNN with the files and the page of every case.
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
@@ -74,7 +81,8 @@ pub(crate) struct ProveArguments {
     /// Write no cases/NNN.
     #[arg(long)]
     pub no_case_pages: bool,
-    /// Instead: make cases until the diagnosis leaves the name of so many open, carry out what `plan` suggests first, and count how often that keeps what it promises.
+    /// Instead: make cases until the diagnosis leaves the name of so many open, carry out what `plan`
+    /// suggests first, and count how often that keeps what it promises.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000),
         conflicts_with_all = ["cases", "graded", "solid", "struck", "solid_as_is", "modal_errors", "channel_flaws", "load_paths", "unknown_physics", "also_from", "only", "shipped", "family", "limits", "recordings"])]
     pub plan: Option<u32>,
@@ -103,13 +111,15 @@ impl ProveArguments {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "On real recordings")]
 pub(crate) struct RealRecordings {
-    /// A directory with real recordings (FRFs) and the fixture.json that goes with them: conceal something there.
+    /// A directory with real recordings (FRFs) and the fixture.json that goes with them: conceal something
+    /// there.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["also_from", "shipped", "family", "wrong", "graded", "no_case_pages"])]
     pub recordings: Option<PathBuf>,
     /// What to conceal [default: whatever fixture and recording have room for, in turn].
     #[arg(long, value_name = "KIND", num_args = 1.., value_parser = ConcealmentKind::ALL.map(ConcealmentKind::name), requires = "recordings")]
     pub conceal: Vec<String>,
-    /// Diagnoses at the most that make the fixture explain the recording, each of what the one before repaired.
+    /// Diagnoses at the most that make the fixture explain the recording, each of what the one before
+    /// repaired.
     #[arg(long, value_name = "N", default_value_t = 1, requires = "recordings")]
     pub rounds: usize,
     /// The level to use, where the recordings were made at several, such as "response 5 m/s^2".

@@ -114,7 +114,8 @@ impl Concealed {
         })
     }
 
-    /// The recording of the case at a position as a universal file: as it came, or in double precision as it was made.
+    /// The recording of the case at a position as a universal file: as it came, or in double precision as it
+    /// was made.
     pub(super) fn recording(&self, position: usize, case: &Asked) -> Result<Vec<u8>, Refusal> {
         match &self.folders {
             Some(folders) => input::bytes(&folders[position].join(FILES[1])),

@@ -30,7 +30,8 @@ impl<'a> CasePages<'a> {
         CasePages { directory: directory.join("cases"), concealed, fault: Mutex::new(None) }
     }
 
-    /// Writes fixture, recording and page of the case at a position. The first fault is kept for [`CasePages::finish`].
+    /// Writes fixture, recording and page of the case at a position. The first fault is kept for
+    /// [`CasePages::finish`].
     pub(super) fn write(&self, position: usize, answer: &Answer) {
         self.keep(self.try_write(position, answer));
     }

@@ -1,4 +1,5 @@
-//! `jointscope prove --recordings`: something concealed in a real recording's fixture or channels, diagnosed, and only then opened.
+//! `jointscope prove --recordings`: something concealed in a real recording's fixture or channels, diagnosed,
+//! and only then opened.
 
 use std::fmt;
 use std::fs;
@@ -21,7 +22,8 @@ use crate::refusal::Refusal;
 /// Cases where no number is given: each takes a whole diagnosis of the recording.
 const CASES: usize = 8;
 
-/// Makes the fixture that explains the recording, conceals, has all cases diagnosed, opens the truths and scores them; answers with the table.
+/// Makes the fixture that explains the recording, conceals, has all cases diagnosed, opens the truths and
+/// scores them; answers with the table.
 pub(super) fn run(directory: &Path, arguments: &ProveArguments) -> Result<String, Refusal> {
     let test = Test::read(directory, &arguments.real)?;
     let plan = plan(arguments);

@@ -16,7 +16,8 @@ pub(super) const TRUTHS_SHA256: &str = "4cc62f599c45ade5ee8ff96fa921908aefe74c71
 /// Options that make the same cases anew, recordings in double precision.
 const ANEW: &str = "--cases 16 --graded 4 --solid 4 --struck 3 --seed 1 --family two-blocks";
 
-/// The folder of the cases: the one that is named, or that of the checkout around the current folder or the program.
+/// The folder of the cases: the one that is named, or that of the checkout around the current folder or the
+/// program.
 pub(super) fn folder(named: Option<&Path>) -> Result<PathBuf, Refusal> {
     if let Some(named) = named {
         return Ok(named.to_owned());

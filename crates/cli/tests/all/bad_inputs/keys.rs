@@ -1,4 +1,5 @@
-//! Keys that a fixture may have beside its blocks and joints, with something wrong in them: supports, effects, channels, errors of the model.
+//! Keys that a fixture may have beside its blocks and joints, with something wrong in them: supports,
+//! effects, channels, errors of the model.
 
 use super::Cases;
 

@@ -1,7 +1,8 @@
-//! Inputs that go wrong, by the hundred, in tables by what is wrong: each through the program, which must refuse it in one plain sentence that says where and what to do, and leave
-//! the directory as it was.
+//! Inputs that go wrong, by the hundred, in tables by what is wrong: each through the program, which must
+//! refuse it in one plain sentence that says where and what to do, and leave the directory as it was.
 //!
-//! A case is a flaw in a good pair (two blocks and their FRFs) and words that the sentence must have. All cases of a table are run before it fails.
+//! A case is a flaw in a good pair (two blocks and their FRFs) and words that the sentence must have. All
+//! cases of a table are run before it fails.
 
 mod arguments;
 mod fixtures;

@@ -140,7 +140,8 @@ impl Bench {
         program.wait_with_output().unwrap()
     }
 
-    /// The program must do it; what a reader at a terminal has of it, progress apart: notices, then the answer.
+    /// The program must do it; what a reader at a terminal has of it, progress apart: notices, then the
+    /// answer.
     #[track_caller]
     pub(crate) fn done(&self, arguments: &[&str]) -> String {
         let (mut notices, answer) = self.notices_and_answer(arguments);
@@ -165,7 +166,8 @@ impl Bench {
         (notices.collect(), String::from_utf8(output.stdout).unwrap())
     }
 
-    /// The program must refuse in one sentence that holds every part, and leave the directory as it was; the sentence.
+    /// The program must refuse in one sentence that holds every part, and leave the directory as it was; the
+    /// sentence.
     #[track_caller]
     pub(crate) fn refused(&self, arguments: &[&str], parts: &[&str]) -> String {
         let before = self.contents();

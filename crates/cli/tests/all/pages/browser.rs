@@ -14,8 +14,9 @@ pub(super) struct Seen {
     pub console: Vec<String>,
 }
 
-/// Opens pages of a bench side by side, each as it was written, its policy in force; `script` defines `look`, which is given the frame of a page and
-/// answers with what can be said as JSON. `None` where there is no browser.
+/// Opens pages of a bench side by side, each as it was written, its policy in force; `script` defines `look`,
+/// which is given the frame of a page and answers with what can be said as JSON. `None` where there is no
+/// browser.
 pub(super) fn opened(bench: &Bench, pages: &[&str], script: &str) -> Option<Seen> {
     let frames: String = pages
         .iter()

@@ -1,4 +1,5 @@
-//! Pages in a browser: plots drawn, nothing complained of, names that are text whatever they hold, nothing lost on paper or in a narrow window.
+//! Pages in a browser: plots drawn, nothing complained of, names that are text whatever they hold, nothing
+//! lost on paper or in a narrow window.
 
 use serde_json::{Value, json};
 
@@ -24,8 +25,9 @@ fn hostile(fixture: &str, names: &[&str]) -> String {
     })
 }
 
-/// Demands of every page that nothing is complained of, no name is taken for markup, every plot is drawn, the policy is in force, a narrow window is
-/// wide enough, and a sheet of paper holds everything; then that the page has plots where it is said to.
+/// Demands of every page that nothing is complained of, no name is taken for markup, every plot is drawn, the
+/// policy is in force, a narrow window is wide enough, and a sheet of paper holds everything; then that the
+/// page has plots where it is said to.
 #[track_caller]
 pub(crate) fn sound(bench: &Bench, pages: &[(&str, bool)]) {
     let paths: Vec<&str> = pages.iter().map(|(page, _)| *page).collect();
@@ -89,7 +91,8 @@ fn a_browser_draws_a_joint_a_check_and_modes_without_a_complaint_and_takes_no_na
     sound(&bench, &[("joint/report.html", true), ("checked/report.html", true), ("modes/report.html", true)]);
 }
 
-/// Two storeys with hostile names, FRFs of them with noise, `before.uff`, and of the same with a mass that nobody has stated, `after.uff`.
+/// Two storeys with hostile names, FRFs of them with noise, `before.uff`, and of the same with a mass that
+/// nobody has stated, `after.uff`.
 fn storeys(name: &str) -> Bench {
     let bench = Bench::new(name);
     let mass = r#""physics": [{ "kind": "added_mass", "place": "high", "x": 0.18, "mass": 0.6 }]"#;

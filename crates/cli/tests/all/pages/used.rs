@@ -12,8 +12,9 @@ fn abscissae(axes: &Value) -> (usize, f64, f64) {
     (numbers.len(), least, numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max))
 }
 
-/// Demands of a page that its plots can be used: keys of legends hide curves, in the page and in what is saved; a drag and a plus zoom, and take the other
-/// plots with them; a double click and Escape leave every plot as it was.
+/// Demands of a page that its plots can be used: keys of legends hide curves, in the page and in what is
+/// saved; a drag and a plus zoom, and take the other plots with them; a double click and Escape leave every
+/// plot as it was.
 #[track_caller]
 fn usable(page: &Value) {
     for list in ["dead", "kept", "stuck", "broken", "altered", "cut"] {

@@ -11,13 +11,16 @@ use serde::Serialize;
 pub struct JointsFit {
     /// One a joint, in the order that they were asked for or stand in the fixture.
     pub joints: Vec<FoundJoint>,
-    /// Names of the numbers that [`covariance`](Self::covariance) is of: `J1/k11` and so on, one joint's after the other's.
+    /// Names of the numbers that [`covariance`](Self::covariance) is of: `J1/k11` and so on, one joint's
+    /// after the other's.
     pub elements: Vec<String>,
-    /// Posterior covariance of the numbers of all joints, SI, the fixture's quantities integrated out; with what the model's error and the laws compared add.
+    /// Posterior covariance of the numbers of all joints, SI, the fixture's quantities integrated out; with
+    /// what the model's error and the laws compared add.
     pub covariance: Vec<Vec<f64>>,
     /// What of it comes from a model that does not explain the FRFs.
     pub model_covariance: Vec<Vec<f64>>,
-    /// What the FRFs alone tell of all joints and of the fixture's quantities; nothing where that is undetermined.
+    /// What the FRFs alone tell of all joints and of the fixture's quantities; nothing where that is
+    /// undetermined.
     pub likelihood: Option<JointLikelihood>,
     /// Numbers of lines recorded and left, where they were merged.
     pub merged: Option<(usize, usize)>,
@@ -34,7 +37,8 @@ pub struct FoundJoint {
     pub is_in_a_loop: bool,
     /// The fixture's stiffness of it.
     pub nominal: RealMatrix2,
-    /// What was found; quantities, FRFs and χ² are those of the fit as a whole. The p-value of reciprocity is of first order; no nearest admissible joint is sought.
+    /// What was found; quantities, FRFs and χ² are those of the fit as a whole. The p-value of reciprocity is
+    /// of first order; no nearest admissible joint is sought.
     pub fit: JointFit,
 }
 

@@ -1,7 +1,8 @@
 //! Laws of several joints over frequency.
 //!
-//! Trying all combinations would take 6ᵐ fits of m joints. All joints begin with K + sC; in each round every joint is fitted with every law, the others keeping theirs, and
-//! the one change that gains most evidence is made. A joint that takes the blame for another's law is so overtaken by the other.
+//! Trying all combinations would take 6ᵐ fits of m joints. All joints begin with K + sC; in each round every
+//! joint is fitted with every law, the others keeping theirs, and the one change that gains most evidence is
+//! made. A joint that takes the blame for another's law is so overtaken by the other.
 
 use super::super::law::{Dynamics, LawKind, coordinates};
 use super::super::laws::{Candidate, LawFit, probable};
@@ -16,7 +17,8 @@ pub(super) struct State {
 }
 
 impl State {
-    /// The joints by these laws, of whose matrices nothing is known beforehand, at their optimum; nothing where all are viscous or the FRFs leave them undetermined.
+    /// The joints by these laws, of whose matrices nothing is known beforehand, at their optimum; nothing
+    /// where all are viscous or the FRFs leave them undetermined.
     pub(super) fn fitted(self, test: Test<'_>) -> Option<(Problem<'_>, Fitted)> {
         if self.laws.iter().all(|law| law.kind == LawKind::Viscous) {
             return None;
@@ -29,7 +31,8 @@ impl State {
     }
 }
 
-/// Every joint's laws, the most probable first, the other joints following their most probable law, and the laws that all follow; without the joints' masses.
+/// Every joint's laws, the most probable first, the other joints following their most probable law, and the
+/// laws that all follow; without the joints' masses.
 pub(super) fn compared(viscous: &Problem, first: &Fitted) -> (Vec<Vec<LawFit>>, State) {
     let joints = viscous.laws.len();
     let mut current = State {
@@ -91,7 +94,8 @@ fn candidates(test: Test, current: &State, joint: usize) -> Vec<(Candidate, Stat
     LawKind::ALL.into_iter().filter_map(of_kind).collect()
 }
 
-/// A joint with a law at its optimum next to the current one: in the middle of the band it begins with the stiffness and damping that it has there.
+/// A joint with a law at its optimum next to the current one: in the middle of the band it begins with the
+/// stiffness and damping that it has there.
 fn candidate(
     test: Test,
     current: &State,

@@ -58,7 +58,8 @@ fn omissions() -> Vec<Effect> {
     ]
 }
 
-/// The recording of hits on 1, with noise of a quarter of a per cent and errors of the shapes of half of one, which no two FRFs share.
+/// The recording of hits on 1, with noise of a quarter of a per cent and errors of the shapes of half of one,
+/// which no two FRFs share.
 fn recorded(truth: &Fixture) -> Observation {
     let responses = ["1", "2", "3", "4", "5", "6"];
     let pairs: Vec<FrfPair> =

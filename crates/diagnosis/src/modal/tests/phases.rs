@@ -7,7 +7,8 @@ use crate::modal::prior::{Prior, priors};
 use crate::settings::Settings;
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 
-/// Two blocks on a strip, held by springs with dashpots of so many N·s/m; its damping ratios are those of all this as it stands.
+/// Two blocks on a strip, held by springs with dashpots of so many N·s/m; its damping ratios are those of all
+/// this as it stands.
 fn held(dashpot: f64) -> Fixture {
     let support = |body: &str, x: f64| {
         format!(r#"{{ "body": "{body}", "x": {x}, "stiffness": 4e5, "damping": {dashpot} }}"#)

@@ -17,7 +17,8 @@ use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 
-/// The recording of the points `responses` by hits on 1 and 2, with noise of a quarter of a per cent and errors of the shapes of half of one, which no two FRFs share.
+/// The recording of the points `responses` by hits on 1 and 2, with noise of a quarter of a per cent and
+/// errors of the shapes of half of one, which no two FRFs share.
 fn recorded(truth: &Fixture, responses: &[&str]) -> Observation {
     let pairs: Vec<FrfPair> =
         ["1", "2"].iter().flat_map(|i| responses.iter().map(move |o| FrfPair::transverse(o, i))).collect();
@@ -43,7 +44,8 @@ fn a_stiffness_that_refutes_what_is_stated_of_it_is_named() {
     assert_eq!(judged.verdict, Verdict::Explained);
     let effects = judged.search.best.fit.hypothesis.effects();
     assert_eq!(effects.iter().map(|e| e.kind).collect::<Vec<_>>(), [EffectKind::StiffnessChange]);
-    // The strip alone comes as close to the lines, five of its deviations off: that is what the name says, and no reason against it.
+    // The strip alone comes as close to the lines, five of its deviations off: that is what the name says,
+    // and no reason against it.
     judged.verdict = Verdict::PartlyExplained;
     let within = Search::without_effects(&fitter, &fixture, false).unwrap();
     let (predicted, search) = judged.predicted(&fitter, &within);
@@ -54,7 +56,8 @@ fn a_stiffness_that_refutes_what_is_stated_of_it_is_named() {
 #[test]
 fn a_gain_is_named_whatever_the_model_is_off_by_in_natural_frequency() {
     let fixture = Fixture::from_json(BLOCKS).unwrap();
-    // Both natural frequencies are 3 % lower than the model's, ten times as much as is usual, and no name is tried that says so.
+    // Both natural frequencies are 3 % lower than the model's, ten times as much as is usual, and no name is
+    // tried that says so.
     let truth = BLOCKS.replace("2.07e11", "1.95e11");
     let gain = Effect::new(EffectKind::ChannelGain, Place::Response("3".into()), None, &[1.08]);
     let truth = Fixture::from_json(&truth).unwrap().with_physics(vec![gain]).unwrap();
@@ -72,7 +75,8 @@ fn a_gain_is_named_whatever_the_model_is_off_by_in_natural_frequency() {
 
 #[test]
 fn glue_that_yields_along_a_foot_is_no_joint_whose_end_was_measured_wrong() {
-    // What a layer along the foot does to the strip, a strip that is longer does but for a length of half a millimetre cubed.
+    // What a layer along the foot does to the strip, a strip that is longer does but for a length of half a
+    // millimetre cubed.
     let fixture = Fixture::from_json(BLOCKS).unwrap();
     let values = [3e4, 0.0, 1.0];
     let place = Place::Point("3".into());
@@ -138,8 +142,9 @@ fn a_spring_without_a_dashpot_pays_for_none_however_large_it_might_have_been() {
 
 #[test]
 fn a_spring_to_ground_is_tried_where_it_makes_the_mode_that_is_missing() {
-    // One block on a spring that nobody stated, 25 Hz, the other one bending: the model has no mode below 245 Hz. Softer springs set out nearer to what is recorded, for they leave the
-    // modes paired as they are, and lead nowhere.
+    // One block on a spring that nobody stated, 25 Hz, the other one bending: the model has no mode below
+    // 245 Hz. Softer springs set out nearer to what is recorded, for they leave the modes paired as they are,
+    // and lead nowhere.
     let fixture = Fixture::from_json(
         r#"{ "bodies": { "A": { "mass": 0.9354, "inertia": 3.553e-4, "x_cg": 0.0253 }, "B": { "mass": 1.5761, "inertia": 2.168e-3, "x_cg": 0.1369 } },
              "points": { "1": { "body": "A", "x": 0.0148 }, "2": { "body": "A", "x": 0.0508 }, "3": { "body": "B", "x": 0.0767 }, "4": { "body": "B", "x": 0.1865 } },
@@ -287,7 +292,8 @@ fn from_2_hz(truth: &Fixture, variance: f64) -> FrfSet {
 
 #[test]
 fn two_effects_are_found_together_that_one_name_imitates() {
-    // A joint that relaxes faster than it swings is stiffer, and damped the more the lower the mode: like a stiffer joint in records behind a window.
+    // A joint that relaxes faster than it swings is stiffer, and damped the more the lower the mode: like a
+    // stiffer joint in records behind a window.
     let known = |value: f64, relative: f64| format!(r#"{{ "value": {value}, "std": {} }}"#, relative * value);
     let fixture = Fixture::from_json(&format!(
         r#"{{ "bodies": {{ "A": {{ "mass": 5.98, "inertia": 8.87e-3, "x_cg": -0.0578 }}, "B": {{ "mass": 2.909, "inertia": 2.498e-3, "x_cg": 0.0921 }} }},
@@ -317,7 +323,8 @@ fn two_effects_are_found_together_that_one_name_imitates() {
 
 #[test]
 fn what_shows_above_the_band_only_is_named_where_the_model_is_stated_exact() {
-    // A foot that gives way across the strip moves modes beyond the lines: below these it does what blocks that bend do, by as much as solids differ from blocks.
+    // A foot that gives way across the strip moves modes beyond the lines: below these it does what blocks
+    // that bend do, by as much as solids differ from blocks.
     let known = |value: f64, relative: f64| format!(r#"{{ "value": {value}, "std": {} }}"#, relative * value);
     let body = |mass: f64, inertia: f64, x_cg: f64| {
         let [mass, inertia] = [(mass, 1e-3), (inertia, 4e-3)].map(|(value, std)| known(value, std));

@@ -9,7 +9,8 @@ use rand_chacha::ChaCha8Rng;
 /// Sampling interval, s.
 pub(crate) const INTERVAL: f64 = 1.0 / 2048.0;
 
-/// A sampled structure of two modes and a direct part, y[n] = d·x[n] + Σ 2 Re Σ_k a p^k x[n − k]: its FRF at any s is known in closed form.
+/// A sampled structure of two modes and a direct part, y[n] = d·x[n] + Σ 2 Re Σ_k a p^k x[n − k]: its FRF at
+/// any s is known in closed form.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Structure {
     /// Frequency in Hz, decay σ in 1/s and residue of each mode.

@@ -66,7 +66,8 @@ impl Beam {
         t[2][columns[0]] * t[3][columns[1]] - t[2][columns[1]] * t[3][columns[0]]
     }
 
-    /// exp(A L) of v' = ψ + Q/κGA, ψ' = M/EI, M' = −Q − ρI ω² ψ, Q' = −ρA ω² v, each scaled to the size of a slender beam's.
+    /// exp(A L) of v' = ψ + Q/κGA, ψ' = M/EI, M' = −Q − ρI ω² ψ, Q' = −ρA ω² v, each scaled to the size of a
+    /// slender beam's.
     fn transfer(&self, omega2: f64) -> [[f64; 4]; 4] {
         let l = self.length;
         let scale = [l, 1.0, self.bending / l, self.bending / (l * l)];

@@ -8,7 +8,8 @@ use jointscope::fixture::JointLaw;
 use jointscope_rig::{drawn_within_tolerance, generator};
 use jointscope_samples::Noise;
 
-/// A joint of each law, with losses of rank one and k of rank one: on the edge of what physics allows, where p-values are those of the null.
+/// A joint of each law, with losses of rank one and k of rank one: on the edge of what physics allows, where
+/// p-values are those of the null.
 fn edges() -> [(LawKind, &'static str); 3] {
     [
         (LawKind::Viscous, ""),
@@ -20,7 +21,8 @@ fn edges() -> [(LawKind, &'static str); 3] {
     ]
 }
 
-/// p-values of the three tests with laws compared, of a joint on the edge, by law; how often the law was followed; χ² per degree of freedom and scores of k11, k12, k22.
+/// p-values of the three tests with laws compared, of a joint on the edge, by law; how often the law was
+/// followed; χ² per degree of freedom and scores of k11, k12, k22.
 #[derive(Default)]
 struct ByLaw {
     p: [Vec<f64>; 3],
@@ -136,8 +138,9 @@ fn p_values_are_uniform_under_each_law() {
         for p in &runs.p[..2] {
             assert!(from_uniform(p) < 1.63 / (p.len() as f64).sqrt(), "{law:?}: {}", from_uniform(p));
         }
-        // A noisy matrix of rank one has an eigenvalue below zero in more than half of all cases where the other elements scatter more than that eigenvalue: middle p are then
-        // too small, those that fail must not be.
+        // A noisy matrix of rank one has an eigenvalue below zero in more than half of all cases where the
+        // other elements scatter more than that eigenvalue: middle p are then too small, those that fail must
+        // not be.
         let failing = runs.p[2].iter().filter(|p| **p < 0.05).count() as f64;
         assert!(failing <= 0.05 * 60.0 + 2.6 * (60.0 * 0.05 * 0.95f64).sqrt(), "{law:?}: {failing}");
     }
@@ -166,7 +169,8 @@ fn parameters(law: &LawFit) -> usize {
     parameters_of(law.kind, law.mass.is_some())
 }
 
-/// Of each truth: how often χ² tells the law from all others by 30, how often it is named then, and how often at all.
+/// Of each truth: how often χ² tells the law from all others by 30, how often it is named then, and how often
+/// at all.
 fn named(count: u64, seed: u64, relative: f64) -> Vec<[usize; 3]> {
     let (mut rng, mut noise) = (generator(seed), Noise::new(seed));
     let of = |(kind, heavy, physics): (LawKind, bool, &str)| {

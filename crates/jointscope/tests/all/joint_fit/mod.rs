@@ -1,4 +1,5 @@
-//! The joint from all FRFs, on recordings that the simulated laboratory makes: it shares no mechanics with the model fitted.
+//! The joint from all FRFs, on recordings that the simulated laboratory makes: it shares no mechanics with
+//! the model fitted.
 
 mod accuracy;
 mod laws;
@@ -120,7 +121,8 @@ pub(crate) fn fit(fixture: &Fixture, frfs: &FrfSet, laws: bool) -> JointFit {
 /// The tests of what physics allows.
 const TESTS: [&str; 3] = ["reciprocity", "definite", "passive"];
 
-/// What many drawn fixtures give: errors of the six numbers in standard deviations, relative errors, p-values.
+/// What many drawn fixtures give: errors of the six numbers in standard deviations, relative errors,
+/// p-values.
 #[derive(Default)]
 struct Runs {
     scores: Vec<[f64; 6]>,

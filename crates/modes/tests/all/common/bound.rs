@@ -1,4 +1,5 @@
-//! The Cramér–Rao bound of frequencies and damping ratios by central differences of the model, and how an estimator compares with it.
+//! The Cramér–Rao bound of frequencies and damping ratios by central differences of the model, and how an
+//! estimator compares with it.
 
 use super::{TrueMode, accelerances, noisy, without_variances};
 use jointscope_linalg::Cholesky;
@@ -19,7 +20,8 @@ pub(crate) struct Scenario {
     pub told: bool,
 }
 
-/// Of one number of one mode: true value, bound, mean error and spread over the bound, rms of (error/its stated deviation).
+/// Of one number of one mode: true value, bound, mean error and spread over the bound, rms of (error/its
+/// stated deviation).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Score {
     pub truth: f64,
@@ -31,8 +33,9 @@ pub(crate) struct Score {
 }
 
 impl Scenario {
-    /// Standard deviations that no unbiased estimator beats: (Hz, ratio) of each mode. Unknown are poles, complex entries over responses and references (the first
-    /// reference's one), and complex residual terms s⁻² and 1 of each FRF.
+    /// Standard deviations that no unbiased estimator beats: (Hz, ratio) of each mode. Unknown are poles,
+    /// complex entries over responses and references (the first reference's one), and complex residual terms
+    /// s⁻² and 1 of each FRF.
     pub(crate) fn bounds(&self) -> Vec<(f64, f64)> {
         let responses = distinct(self.pairs.iter().map(|p| p.0));
         let references = distinct(self.pairs.iter().map(|p| p.1));
@@ -117,7 +120,8 @@ impl Scenario {
         (0..nm).map(|m| (std(per_mode * m), std(per_mode * m + 1))).collect()
     }
 
-    /// Scores of frequency and damping ratio of each mode over so many seeds, and how often the right number of modes was found.
+    /// Scores of frequency and damping ratio of each mode over so many seeds, and how often the right number
+    /// of modes was found.
     pub(crate) fn scores(&self, seeds: u64) -> (Vec<[Score; 2]>, f64) {
         let bounds = self.bounds();
         let clean = accelerances(&self.modes, 2.0, &self.pairs, &self.lines);

@@ -28,7 +28,8 @@ const APART: [f64; 2] = [0.4, 0.6];
 /// Damping ratios of the elastic modes, and how well they are known.
 const RATIO: [f64; 2] = [0.003, 0.009];
 const RATIO_KNOWN: f64 = 0.2;
-/// Frequency at which a block alone bounces on its soft support, Hz, its damping ratio, and how well both are known.
+/// Frequency at which a block alone bounces on its soft support, Hz, its damping ratio, and how well both are
+/// known.
 const BOUNCE: [f64; 2] = [2.0, 4.0];
 const BOUNCE_RATIO: [f64; 2] = [0.01, 0.05];
 const SUPPORT_KNOWN: [f64; 2] = [0.1, 0.25];
@@ -124,7 +125,8 @@ impl Assembly {
         self.apart = [at(&a, APART, false), at(&b, APART, true)];
     }
 
-    /// The fixture without geometry at its true quantities, with the deviations that an analyst states; of the strip what is stated.
+    /// The fixture without geometry at its true quantities, with the deviations that an analyst states; of
+    /// the strip what is stated.
     pub(super) fn lumped(
         &self,
         stated: Option<Stated>,
@@ -185,7 +187,8 @@ impl Assembly {
         physics
     }
 
-    /// The solid as a fixture with geometry: true quantities, points that no fixture states, and nothing of the strip's physics.
+    /// The solid as a fixture with geometry: true quantities, points that no fixture states, and nothing of
+    /// the strip's physics.
     pub(super) fn solid(&self) -> Result<Value, GenerationError> {
         let mut value = self.lumped(None, None)?.to_value();
         for ((name, body), x) in UNSTATED.iter().zip(["A", "B"]).zip(self.apart) {

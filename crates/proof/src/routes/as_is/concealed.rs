@@ -55,7 +55,8 @@ const LAYER: [f64; 2] = [1e-4, 5e-4];
 const SLENDER: [f64; 2] = [7.0, 12.0];
 
 impl Concealed {
-    /// Conceals it where the assembly is changed by it; the effect that says the same follows from [`Concealed::effect`].
+    /// Conceals it where the assembly is changed by it; the effect that says the same follows from
+    /// [`Concealed::effect`].
     pub(super) fn within(self, mut assembly: Assembly, random: &mut impl Rng) -> Assembly {
         match self {
             Concealed::Modulus => {

@@ -1,8 +1,9 @@
 //! Cases whose recording comes from a solid as it is: nothing of it idealised.
 //!
-//! Blocks are as stiff as their material and yield under the strip, the strip weighs, shears and bends as a plate, every mode has a damping
-//! ratio of its own. The fixture is what an honest analyst writes: mass and shear of the strip from its dimensions, its footings from a static solve of
-//! the nominal solid, each with a standard deviation. No lumped model is right to the noise of such a test.
+//! Blocks are as stiff as their material and yield under the strip, the strip weighs, shears and bends as a
+//! plate, every mode has a damping ratio of its own. The fixture is what an honest analyst writes: mass and
+//! shear of the strip from its dimensions, its footings from a static solve of the nominal solid, each with a
+//! standard deviation. No lumped model is right to the noise of such a test.
 
 mod assembly;
 mod concealed;
@@ -61,7 +62,8 @@ const RECORDED: [(&str, &str); 4] = [("3", "1"), ("3", "2"), ("4", "1"), ("4", "
 /// FRFs at points of the solid that no fixture states.
 const UNSEEN: [(&str, &str); 5] = [("91", "91"), ("92", "92"), ("92", "91"), ("91", "1"), ("4", "91")];
 
-/// Fine where strips meet blocks, for their footing is part of the solid; what is left of the mesh's error the static solve has too.
+/// Fine where strips meet blocks, for their footing is part of the solid; what is left of the mesh's error
+/// the static solve has too.
 const MESH: MeshOptions =
     MeshOptions { corner: 4, along: 12, across: 2, growth: 3.0, whole: false, without: NOTHING };
 const NOTHING: Omissions =
@@ -139,7 +141,8 @@ impl AsIsTruth {
         Err(GenerationError::Unlucky(index))
     }
 
-    /// Noise-free accelerances: those recorded, as the measuring chain reads them, and those that nobody records, as a perfect instrument would.
+    /// Noise-free accelerances: those recorded, as the measuring chain reads them, and those that nobody
+    /// records, as a perfect instrument would.
     ///
     /// # Errors
     /// A solid that cannot be meshed or whose modes cannot be found; none of a case that was drawn.

@@ -37,8 +37,9 @@ impl Gap {
 
     /// Names that are true of any solid with this gap, its blocks' first bending at these frequencies (Hz).
     ///
-    /// Ends of a strip yield across it as well as in rotation, and its shear coefficient is that of an ideal section: both stay true where the
-    /// usual shear is stated. A yielding end is a longer strip, or a softer one; a plate is a shorter or a stiffer one.
+    /// Ends of a strip yield across it as well as in rotation, and its shear coefficient is that of an ideal
+    /// section: both stay true where the usual shear is stated. A yielding end is a longer strip, or a softer
+    /// one; a plate is a shorter or a stiffer one.
     pub(super) fn true_names(self, first_bending: [f64; 2]) -> Vec<TrueName> {
         let mut names = vec![
             TrueName::of(EffectKind::ShearDeformation).at(&["J"]),

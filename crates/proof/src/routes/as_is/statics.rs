@@ -1,9 +1,8 @@
 //! What the strip's footings yield, from a static solve of the solid.
 //!
-//! A lumped strip seen from its far end has the flexibility
-//! C = [[L³/3EI, L²/2EI], [L²/2EI, L/EI]] + c₁·[[L², L], [L, 1]] + c₂·[[0, 0], [0, 1]] + c_s·[[1, 0], [0, 0]],
-//! c₁ and c₂ being the rotational compliances of its footings and c_s that of its shear. The solid's C under a moment and under a force tells
-//! them apart.
+//! A lumped strip seen from its far end has the flexibility C = [[L³/3EI, L²/2EI], [L²/2EI, L/EI]] + c₁·[[L²,
+//! L], [L, 1]] + c₂·[[0, 0], [0, 1]] + c_s·[[1, 0], [0, 0]], c₁ and c₂ being the rotational compliances of
+//! its footings and c_s that of its shear. The solid's C under a moment and under a force tells them apart.
 
 use super::assembly::Assembly;
 use super::footings::Footings;

@@ -1,7 +1,9 @@
-//! What cases have in common that are judged by the names given: those that are true, the first of them, their scores.
+//! What cases have in common that are judged by the names given: those that are true, the first of them,
+//! their scores.
 //!
-//! Where a model is a little wrong everywhere, what is hidden has to be told from the model's own error, and whatever is named has to be true of the
-//! structure. Where a fixture is right to the noise, what is hidden is named first and alone.
+//! Where a model is a little wrong everywhere, what is hidden has to be told from the model's own error, and
+//! whatever is named has to be true of the structure. Where a fixture is right to the noise, what is hidden
+//! is named first and alone.
 
 mod judged;
 mod names;

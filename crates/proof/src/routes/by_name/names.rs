@@ -3,7 +3,8 @@
 use jointscope_fixture::{Dof, Effect, EffectKind};
 use serde::{Deserialize, Serialize};
 
-/// Effects that are true of a structure, by kind and as far as it matters by degree of freedom, place and size.
+/// Effects that are true of a structure, by kind and as far as it matters by degree of freedom, place and
+/// size.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrueName {
     /// The kind's name.

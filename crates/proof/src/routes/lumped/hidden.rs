@@ -48,16 +48,18 @@ const CHANNEL_FLAWS: [Hidden; 15] = [
     Of(PointOffset),
 ];
 
-/// Load paths beside a joint and to ground, and what a joint stands on, in the order in which cases take them.
+/// Load paths beside a joint and to ground, and what a joint stands on, in the order in which cases take
+/// them.
 const LOAD_PATHS: [Hidden; 5] =
     [Of(ParallelStiffness), Of(Footing), Of(Bypass), Of(Springpot), RotationalSupport];
 
-/// Relative change of the recorded FRFs between which physics without a name is drawn: from what nobody could see to what leaves the assembly
-/// recognisable.
+/// Relative change of the recorded FRFs between which physics without a name is drawn: from what nobody could
+/// see to what leaves the assembly recognisable.
 const SHOWS: [f64; 2] = [1e-4, 0.8];
 /// Draws of a flaw until it falls on the side of the chain that is wanted.
 const DRAWS: usize = 60;
-/// Shares of the tests of channels that strike one point only, or read one only: there an equal flaw elsewhere is the same thing.
+/// Shares of the tests of channels that strike one point only, or read one only: there an equal flaw
+/// elsewhere is the same thing.
 const ONE_SIDED: f64 = 0.2;
 
 /// One of the things that a route hides, in turn.

@@ -1,7 +1,9 @@
-//! Lumped cases of the laboratory's structures that hide one effect of a chosen set of kinds, or physics that no effect is.
+//! Lumped cases of the laboratory's structures that hide one effect of a chosen set of kinds, or physics that
+//! no effect is.
 //!
-//! The laboratory's own cases take sixteen kinds in turn, and what a seed draws of them must stay the same. Kinds that came later, all flaws of the
-//! measuring chain, and more of what no fixture file describes have routes of their own here.
+//! The laboratory's own cases take sixteen kinds in turn, and what a seed draws of them must stay the same.
+//! Kinds that came later, all flaws of the measuring chain, and more of what no fixture file describes have
+//! routes of their own here.
 
 mod hidden;
 mod route;

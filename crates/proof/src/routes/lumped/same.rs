@@ -1,5 +1,5 @@
-//! Names that are exactly the same thing in a recording: a hammer's gain and that of the only reference, a sensor's mass and mass on the body that
-//! is read nowhere else.
+//! Names that are exactly the same thing in a recording: a hammer's gain and that of the only reference, a
+//! sensor's mass and mass on the body that is read nowhere else.
 
 use crate::hammer_test::recorded_lines;
 use crate::objective::relative_error;
@@ -10,7 +10,8 @@ use jointscope_spectra::{FrfPair, FrfSet};
 /// Relative difference of FRFs below which it is rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// Whether an effect of the name of `found` makes exactly the FRFs that `hidden` makes, whatever the structure: its size follows from the hidden one's.
+/// Whether an effect of the name of `found` makes exactly the FRFs that `hidden` makes, whatever the
+/// structure: its size follows from the hidden one's.
 pub(super) fn is_the_same(fixture: &Fixture, recorded: &[FrfPair], hidden: &Effect, found: &Effect) -> bool {
     let equal = equals(fixture, hidden, found);
     if equal.is_empty() {

@@ -1,7 +1,8 @@
 //! Lumped structures that are a little wrong in every mode.
 //!
-//! The laboratory's structures are what their fixtures say, but for what is hidden. Here every natural frequency, damping ratio and shape of the true
-//! structure has an error of its own besides, as real structures have, and the hammer test is quiet enough for that to matter.
+//! The laboratory's structures are what their fixtures say, but for what is hidden. Here every natural
+//! frequency, damping ratio and shape of the true structure has an error of its own besides, as real
+//! structures have, and the hammer test is quiet enough for that to matter.
 
 use super::by_name::Nameable;
 use super::quiet::quiet_hammer;
@@ -28,7 +29,8 @@ const ROLES: [Role; 4] = [Role::Single, Role::Null, Role::Single, Role::Single];
 const FREQUENCY: [f64; 2] = [0.0005, 0.005];
 const DAMPING: [f64; 2] = [0.01, 0.1];
 const SHAPE: [f64; 2] = [0.001, 0.01];
-/// How many times as large as with it χ² must be without what is hidden for that to show: the model's error is then three times as large.
+/// How many times as large as with it χ² must be without what is hidden for that to show: the model's error
+/// is then three times as large.
 const SHOWS: f64 = 10.0;
 
 /// What is true of a case with errors in its modes.
@@ -143,7 +145,8 @@ impl Judgeable for ModalErrorsTruth {
 }
 
 impl Nameable for ModalErrorsTruth {
-    /// What fits alone as well as the truth: within what chance makes, χ² per degree of freedom being what the errors make it.
+    /// What fits alone as well as the truth: within what chance makes, χ² per degree of freedom being what
+    /// the errors make it.
     fn stands_for(&self, found: &Effect, fits: &IndependentFits) -> bool {
         let inflation = (fits.truth / fits.values.max(1) as f64).max(1.0);
         let as_good = |objective: &f64| *objective <= fits.truth + AS_GOOD * inflation;

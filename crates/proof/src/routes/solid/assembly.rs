@@ -7,7 +7,8 @@ use jointscope_rig::{Structure, StructureError};
 use rand::{Rng, RngExt};
 use serde_json::{Value, json};
 
-/// Materials of blocks and strips: name, Young's modulus (N/m²), density (kg/m³), shear modulus along the grain (N/m²).
+/// Materials of blocks and strips: name, Young's modulus (N/m²), density (kg/m³), shear modulus along the
+/// grain (N/m²).
 pub(in crate::routes) const MATERIALS: [(&str, f64, f64, f64); 5] = [
     ("steel", 2.07e11, 7850.0, 8.0e10),
     ("aluminium", 7.0e10, 2700.0, 2.6e10),
@@ -161,7 +162,8 @@ impl Assembly {
             }
         };
         let thick = shape == StripShape::Thick || thickness < 0.2 * length;
-        // ζω alike: a matrix proportional to the blocks' masses, which couples no modes whatever yields between them.
+        // ζω alike: a matrix proportional to the blocks' masses, which couples no modes whatever yields
+        // between them.
         let lumped = lumped(second_moment, [ratio, ratio * lowest / highest])?;
         if !(thick
             && thickness < 0.5 * height
@@ -186,7 +188,8 @@ impl Assembly {
         [self.blocks[0].at(between(random, [0.4, 0.8])), self.blocks[1].at(between(random, [0.1, 0.5]))]
     }
 
-    /// The `geometry` of the solid; `layer` is one end (0 or 1) of the strip, the layer's thickness (m) and Young's modulus (N/m²).
+    /// The `geometry` of the solid; `layer` is one end (0 or 1) of the strip, the layer's thickness (m) and
+    /// Young's modulus (N/m²).
     pub(super) fn geometry(&self, layer: Option<(usize, f64, f64)>) -> Value {
         let material = |(name, modulus, density, _): &(&str, f64, f64, f64)| {
             (

@@ -1,7 +1,7 @@
 //! The solid's damping, as fixture files mean it: the viscous matrix of the assembly without its effects.
 //!
-//! A twin damps its modes by ratios, whatever they look like. The ratios that a fixture states are those of the massless strip held firmly; where
-//! a layer yields, the same matrix makes other ratios of the new modes.
+//! A twin damps its modes by ratios, whatever they look like. The ratios that a fixture states are those of
+//! the massless strip held firmly; where a layer yields, the same matrix makes other ratios of the new modes.
 
 use super::twin::{MESH, Shown, twin};
 use crate::GenerationError;
@@ -22,7 +22,8 @@ const APART: f64 = 0.01;
 /// Rounds of taking it, each about the last.
 const ROUNDS: usize = 3;
 
-/// `solid` with the damping ratios that the lumped fixture's viscous matrix gives the modes of strip and layers. `None` where a pole is not found.
+/// `solid` with the damping ratios that the lumped fixture's viscous matrix gives the modes of strip and
+/// layers. `None` where a pole is not found.
 pub(super) fn as_without(
     solid: Fixture,
     shown: &Shown,
@@ -69,7 +70,8 @@ fn ratio(lumped: &Fixture, near: f64) -> Result<Option<f64>, GenerationError> {
     Ok(found)
 }
 
-/// The pole p of H(s) = (b₀ + b₁ s)/(s − p), which an FRF is near a resonance, from three lines: H s = p H + b₀ + b₁ s.
+/// The pole p of H(s) = (b₀ + b₁ s)/(s − p), which an FRF is near a resonance, from three lines: H s = p
+/// H + b₀ + b₁ s.
 fn pole(lumped: &Fixture, hz: f64) -> Result<Option<Complex64>, GenerationError> {
     let lines = SpectralLines::new(vec![(1.0 - APART) * hz, hz, (1.0 + APART) * hz])?;
     let set = frfs(lumped, &[FrfPair::transverse("4", "1")], &lines, Instrument::Perfect)?;

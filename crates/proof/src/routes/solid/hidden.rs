@@ -39,7 +39,8 @@ pub(super) const CONCEALED: [Concealed; 9] = [
 /// How many of them are in the solid itself: one of two concealed things always is.
 pub(super) const IN_THE_SOLID: usize = 5;
 
-/// Young's modulus of glue, N/m², and the stiffness of its layer against the strip's rotational stiffness at that end.
+/// Young's modulus of glue, N/m², and the stiffness of its layer against the strip's rotational stiffness at
+/// that end.
 const GLUE: [f64; 2] = [1e9, 8e9];
 const AGAINST_ROTATION: [f64; 2] = [1.0, 20.0];
 /// Poisson's ratio is switched off in layers.

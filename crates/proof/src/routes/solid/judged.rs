@@ -85,8 +85,8 @@ impl SolidJudged {
     }
 }
 
-/// Whether two effects have one name, or are one spring in series across the strip: shear of the strip and a layer that slides at either end
-/// are the same number to blocks on a strip without mass.
+/// Whether two effects have one name, or are one spring in series across the strip: shear of the strip and a
+/// layer that slides at either end are the same number to blocks on a strip without mass.
 pub(super) fn are_the_same(a: &Effect, b: &Effect) -> bool {
     Name::of(a) == Name::of(b) || (is_across(a) && is_across(b))
 }

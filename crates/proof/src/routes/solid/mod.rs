@@ -1,8 +1,9 @@
 //! Cases whose recording comes from a solid: the finite-element twin of two blocks on a strip.
 //!
-//! The diagnosis believes in the lumped fixture of the same assembly. Of all that a solid has beyond it (the strip's mass and shear, layers,
-//! plate action, blocks and footing that yield) only what is concealed is left on, and every quantity of the fixture lies within its
-//! tolerance of the solid's own. So what is concealed has a name, and a size in closed form.
+//! The diagnosis believes in the lumped fixture of the same assembly. Of all that a solid has beyond it (the
+//! strip's mass and shear, layers, plate action, blocks and footing that yield) only what is concealed is
+//! left on, and every quantity of the fixture lies within its tolerance of the solid's own. So what is
+//! concealed has a name, and a size in closed form.
 
 pub(super) mod assembly;
 mod damping;
@@ -43,7 +44,8 @@ pub struct SolidTruth {
     pub source: String,
     /// How much was hidden.
     pub role: Role,
-    /// The solid: the fixture's true quantities with `geometry`, and what is mounted on it; points that nobody knows of included.
+    /// The solid: the fixture's true quantities with `geometry`, and what is mounted on it; points that
+    /// nobody knows of included.
     pub solid: Fixture,
     /// What is left on, of all that the lumped model leaves out.
     pub shown: Shown,
@@ -110,8 +112,8 @@ impl SolidTruth {
         Err(GenerationError::Unlucky(index))
     }
 
-    /// Noise-free accelerances: those recorded, as the measuring chain reads them, and those that nobody records, as a perfect
-    /// instrument would.
+    /// Noise-free accelerances: those recorded, as the measuring chain reads them, and those that nobody
+    /// records, as a perfect instrument would.
     ///
     /// # Errors
     /// A solid that cannot be meshed or whose modes cannot be found; none of a case that was drawn.
@@ -179,7 +181,8 @@ fn concealed(role: Role, number: usize, random: &mut impl Rng) -> Vec<hidden::Co
     }
 }
 
-/// The fixture that is meshed: true quantities, geometry, what is mounted, and points where something is read elsewhere or not at all.
+/// The fixture that is meshed: true quantities, geometry, what is mounted, and points where something is read
+/// elsewhere or not at all.
 fn solid(assembly: &Assembly, hidden: &Hidden, random: &mut impl Rng) -> Result<Fixture, GenerationError> {
     let mut value = assembly.lumped.to_value();
     value["geometry"] = assembly.geometry(hidden.layer.map(|l| (l.end, l.thickness, l.modulus)));

@@ -20,7 +20,8 @@ fn transverse(truth: &SolidTruth, mesh: &MeshOptions) -> [f64; 2] {
     [own.next().unwrap(), own.next().unwrap()]
 }
 
-/// The same of the lumped fixture with what is hidden in closed form, all that comes with it included: where its FRF 4/1 peaks about `near`.
+/// The same of the lumped fixture with what is hidden in closed form, all that comes with it included: where
+/// its FRF 4/1 peaks about `near`.
 fn closed_form(truth: &SolidTruth, near: [f64; 2]) -> [f64; 2] {
     let of_the_strip = |effect: &&Effect| {
         let kinds = [EffectKind::JointMass, EffectKind::InterfaceCompliance, EffectKind::ShearDeformation];
@@ -44,7 +45,8 @@ fn closed_form(truth: &SolidTruth, near: [f64; 2]) -> [f64; 2] {
 
 #[test]
 fn the_mesh_is_fine_enough_and_closed_forms_are_those_of_the_solid() {
-    // A null, a layer, the shear of a thick strip: there plane sections that blocks hold flat make the solid stiffer than 5/6 GA.
+    // A null, a layer, the shear of a thick strip: there plane sections that blocks hold flat make the solid
+    // stiffer than 5/6 GA.
     for (number, allowed) in [(1, 1e-3), (2, 1e-3), (3, 8e-3)] {
         let (_, truth) = drawn(1, number).unwrap();
         let [coarse, fine] = [&twin::MESH, &FINER].map(|mesh| transverse(&truth, mesh));

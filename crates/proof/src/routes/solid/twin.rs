@@ -18,8 +18,8 @@ pub struct Shown {
     pub layer_shear: Option<f64>,
 }
 
-/// Frequencies within 0.1 % of those on a mesh twice as fine. A strip that cannot shear needs many elements along it; its corners do not count,
-/// since the blocks hardly yield.
+/// Frequencies within 0.1 % of those on a mesh twice as fine. A strip that cannot shear needs many elements
+/// along it; its corners do not count, since the blocks hardly yield.
 pub(crate) const MESH: MeshOptions = MeshOptions {
     corner: 4,
     along: 32,
@@ -29,10 +29,11 @@ pub(crate) const MESH: MeshOptions = MeshOptions {
     without: Omissions { joint_mass: true, shear: true, plate_action: true, block_flexibility: true },
 };
 
-/// Factor by which blocks are stiffer than the twin's own omission makes them, which leaves a hundredth of the footing: as much as 0.1 % of
-/// the second frequency.
+/// Factor by which blocks are stiffer than the twin's own omission makes them, which leaves a hundredth of
+/// the footing: as much as 0.1 % of the second frequency.
 const STIFFER: f64 = 10.0;
-/// Factor by which strips and layers weigh less than the twin's own omission leaves them: a hundredth of a strip was found by its name.
+/// Factor by which strips and layers weigh less than the twin's own omission leaves them: a hundredth of a
+/// strip was found by its name.
 const LIGHTER: f64 = 0.01;
 /// Modes up to this multiple of the last line.
 const MODES: f64 = 2.0;
@@ -50,7 +51,8 @@ pub(super) fn twin(
     Ok(Twin::of_mesh(solid, mesh, range, |_| ())?)
 }
 
-/// Gives strip and layer back what is concealed in them, and takes more of the rest from them and from the blocks.
+/// Gives strip and layer back what is concealed in them, and takes more of the rest from them and from the
+/// blocks.
 fn restore(mesh: &mut Mesh, options: &MeshOptions, shown: &Shown) {
     // Without omissions a mesh has its materials as they are; with them, as they are first.
     let sets = if options.without == Omissions::default() { 1 } else { 3 };

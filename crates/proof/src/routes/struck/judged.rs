@@ -48,7 +48,8 @@ impl StruckJudged {
         self.findings().iter().any(|found| !self.is_hidden(found))
     }
 
-    /// Of hits in which nothing was seen to depend on amplitude: whether the fixture was called consistent with their FRFs.
+    /// Of hits in which nothing was seen to depend on amplitude: whether the fixture was called consistent
+    /// with their FRFs.
     pub(crate) fn is_linearly_consistent(&self) -> Option<bool> {
         let linear = self.answer.as_ref().ok()?.linear.as_ref()?;
         Some(linear.verdict == LinearVerdict::Consistent)

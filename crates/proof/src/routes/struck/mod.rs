@@ -1,6 +1,8 @@
-//! Cases of hits over time: what depends on amplitude, in one joint of an assembly, and hits of several strengths.
+//! Cases of hits over time: what depends on amplitude, in one joint of an assembly, and hits of several
+//! strengths.
 //!
-//! The laboratory integrates the motion step by step (Runge and Kutta); the diagnosis has hits and the fixture, and nothing else.
+//! The laboratory integrates the motion step by step (Runge and Kutta); the diagnosis has hits and the
+//! fixture, and nothing else.
 
 mod answer;
 mod judged;
@@ -50,7 +52,8 @@ pub enum StruckRole {
     Linear,
     /// A law that the hits exercise.
     Law,
-    /// A law that they do not: a gap that never closes, friction that never slips, a cubic term that is not reached.
+    /// A law that they do not: a gap that never closes, friction that never slips, a cubic term that is not
+    /// reached.
     #[serde(rename = "idle law")]
     Idle,
 }
@@ -83,7 +86,8 @@ pub struct StruckTruth {
     pub fixture: Fixture,
     /// How it was struck.
     pub test: StrikeTest,
-    /// Largest relative motion of the hidden law's joint under the hardest blow, of the structure without the law, m or rad.
+    /// Largest relative motion of the hidden law's joint under the hardest blow, of the structure without the
+    /// law, m or rad.
     pub reach: Option<f64>,
 }
 

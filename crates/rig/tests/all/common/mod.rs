@@ -11,7 +11,8 @@ pub(crate) fn frfs_in(bytes: &[u8], fixture: &Fixture) -> FrfSet {
     Recording::of(&[source], fixture, &ReadOptions::default()).unwrap().frfs().unwrap().clone()
 }
 
-/// χ² and degrees of freedom (two a complex value) of `measured` against `model`, both in the same form and pairs.
+/// χ² and degrees of freedom (two a complex value) of `measured` against `model`, both in the same form and
+/// pairs.
 pub(crate) fn chi_squared(measured: &FrfSet, model: &FrfSet, half_width: usize) -> (f64, f64) {
     let (mut chi2, mut dof) = (0.0, 0.0);
     for index in 0..measured.pairs().len() {
