@@ -145,9 +145,10 @@ impl Catalogue<'_> {
                     .for_each(|kind| self.add(kind, place.clone(), None));
             }
         }
-        for response in responses {
-            let place = || Place::Response(response.clone());
-            kinds(|spec| spec.place == ResponseChannel).for_each(|kind| self.add(kind, place(), None));
+        // The one sensor that was moved from response to response.
+        let all = (responses.len() > 1).then_some(Place::Responses);
+        for place in responses.into_iter().map(Place::Response).chain(all) {
+            kinds(|spec| spec.place == ResponseChannel).for_each(|kind| self.add(kind, place.clone(), None));
         }
         kinds(|spec| spec.place == All).for_each(|kind| self.add(kind, Place::All, None));
     }
@@ -371,7 +372,11 @@ impl Surroundings<'_> {
         match measure {
             Measure::One => Some(1.0),
             Measure::OneWhereItTurns => self.body.filter(|&body| turns(self.fixture, body)).map(|_| 1.0),
-            Measure::BodyMass => self.body.map(mass),
+            // What sits on no body in particular is small beside the lightest.
+            Measure::BodyMass => self
+                .body
+                .map(mass)
+                .or_else(|| (0..self.fixture.bodies().len()).map(mass).min_by(f64::total_cmp)),
             Measure::BodySpring => {
                 let middle = self.frequencies(1, 1.0, 1.0)[0] * TAU;
                 let own = |body: usize| match self.dof {

@@ -77,6 +77,11 @@ pub(crate) fn judged(
             .refitted_from(fitter, &modal.stated[0]),
         None => refitted.refitted_widely(fitter).with_wrong_quantities(fitter),
     };
+    let moved = modal.as_ref().filter(|modal| modal.is_unexplained());
+    if let Some(found) = moved.and_then(|_| without_effects.explained_by_moved_sensor(fitter)) {
+        let start = Start::Found(Box::new(found));
+        return Ok(by_lines(fitter, without_effects, given, start, None, division.as_ref()));
+    }
     let parts = routed(fitter, &without_effects, given, modal.as_ref(), division.as_ref());
     Ok(match parts.verdict {
         Verdict::Unexplained => {

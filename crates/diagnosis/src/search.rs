@@ -11,7 +11,7 @@ use crate::ranking::Ranking;
 use crate::settings::Settings;
 use crate::together::as_one;
 use crate::{Hypothesis, Observation, Watch};
-use jointscope_fixture::Fixture;
+use jointscope_fixture::{EffectKind, Fixture, Place};
 use jointscope_spectra::FrfPair;
 
 /// The outcome of a search.
@@ -83,6 +83,17 @@ impl Search {
     pub(crate) fn explained_by_odd_record(&self, fitter: &Fitter) -> Option<Search> {
         let odd = odd_record(fitter.observation, &self.nominal)?;
         let repaired = fitter.refitted(&self.nominal.hypothesis.with(odd.effect(0)))?;
+        explains(fitter, &repaired, true).then(|| Search { repaired, ..self.clone() })
+    }
+
+    /// The fixture with one sensor's mass that goes from response to response, where that explains the lines down to their noise: the poles that all FRFs share are of no
+    /// structure then, and modes tell nothing.
+    pub(crate) fn explained_by_moved_sensor(&self, fitter: &Fitter) -> Option<Search> {
+        let is_moved = |c: &&Candidate| c.kind == EffectKind::SensorMass && c.place == Place::Responses;
+        let sensor = self.candidates.iter().find(is_moved)?;
+        let fit = |start: usize| fitter.refitted(&self.nominal.hypothesis.with(sensor.effect(start)));
+        let fits = (0..sensor.starts.len()).filter_map(fit);
+        let repaired = fits.min_by(|a, b| a.objective.total_cmp(&b.objective))?;
         explains(fitter, &repaired, true).then(|| Search { repaired, ..self.clone() })
     }
 

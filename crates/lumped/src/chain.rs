@@ -149,7 +149,7 @@ fn reading(fixture: &Fixture, effects: &[Action], pair: &FrfPair) -> Result<Read
                 -1 => filters.push((filter, true)),
                 _ => {}
             },
-            Action::SensorLoad { response, mass } if pair.response.is_named(response) => load += mass,
+            Action::SensorLoad { response, mass } if signal_power(response, pair) == 1 => load += mass,
             _ => {}
         }
     }

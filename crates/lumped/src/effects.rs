@@ -25,7 +25,7 @@ pub(crate) enum Action<'a> {
     /// A channel's signal passes a filter.
     Filtered { channel: &'a Place, filter: SignalFilter },
     /// A mass sits at the response while it is measured.
-    SensorLoad { response: &'a str, mass: f64 },
+    SensorLoad { response: &'a Place, mass: f64 },
     /// Responses were multiplied by e^{−decay·t}.
     Window { decay: f64 },
     /// A force that depends on the amplitude, over time only.
@@ -146,10 +146,7 @@ pub(crate) fn action<'a>(fixture: &'a Fixture, effect: &'a Effect) -> Option<Act
         Kind::PointOffset => Some(Action::Offset { place: &effect.place, dx: value(0) }),
         Kind::ChannelGain => Some(Action::Signal { channel: &effect.place, gain: value(0), delay: 0.0 }),
         Kind::ChannelDelay => Some(Action::Signal { channel: &effect.place, gain: 1.0, delay: value(0) }),
-        Kind::SensorMass => match &effect.place {
-            Place::Response(response) => Some(Action::SensorLoad { response, mass: value(0) }),
-            _ => None,
-        },
+        Kind::SensorMass => Some(Action::SensorLoad { response: &effect.place, mass: value(0) }),
         Kind::ExponentialWindow => Some(Action::Window { decay: value(0) }),
         Kind::ParallelStiffness => on_joint(PointLaw::Spring { stiffness: value(0), damping: value(1) }),
         Kind::Springpot => on_joint(PointLaw::Springpot { stiffness: value(0), exponent: value(1) }),

@@ -104,7 +104,7 @@ fn place(kind: PlaceKind) -> Value {
             "type": "string", "pattern": "^(response .+|reference .+|record .+/.+|force|responses)$", "description": "`response N`, `reference N` (N a point, `N:theta` for a rotation), `record N/M` (the record of one FRF), `force`, or `responses` (all of them alike)."
         }),
         PlaceKind::ResponseChannel => {
-            json!({ "type": "string", "pattern": "^response .+$", "description": "`response N`, N a point." })
+            json!({ "type": "string", "pattern": "^(response .+|responses)$", "description": "`response N`, N a point, or `responses`: one sensor that is moved from point to point." })
         }
         PlaceKind::All => json!({ "const": "all" }),
         _ => text("The path of a quantity in this file, such as `bodies/A/mass`."),

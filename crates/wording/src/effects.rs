@@ -51,6 +51,7 @@ impl Sized<'_> {
             Case::Rotation => self.effect.dof == Some(Dof::Rotation),
             Case::Record => matches!(self.effect.place, Place::Record(_)),
             Case::Force => self.effect.place == Place::Force,
+            Case::Responses => self.effect.place == Place::Responses,
             Case::Response => matches!(self.effect.place, Place::Response(_)),
             Case::Reference => matches!(self.effect.place, Place::Reference(_)),
             Case::OnlySure(parameter) => {

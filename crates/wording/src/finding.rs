@@ -193,7 +193,7 @@ mod tests {
         let body = || Place::Body("B".into());
         let joint = || Place::Joint("J".into());
         type Case<'a> = (EffectKind, Place, Option<Dof>, &'a [f64], &'a [&'a str]);
-        let cases: [Case; 25] = [
+        let cases: [Case; 26] = [
             (
                 EffectKind::AddedMass,
                 body(),
@@ -275,6 +275,13 @@ mod tests {
                 &["force", "1.03", "sensors that stay on"],
             ),
             (EffectKind::ChannelDelay, Place::Response("4".into()), None, &[22e-6], &["lags", "22.00 µs"]),
+            (
+                EffectKind::SensorMass,
+                Place::Responses,
+                None,
+                &[0.012],
+                &["12.00 g", "from response to response"],
+            ),
             (EffectKind::SensorMass, Place::Response("4".into()), None, &[0.012], &["12.00 g", "moved"]),
             (EffectKind::ExponentialWindow, Place::All, None, &[12.0], &["12.00 1/s", "damped"]),
             (

@@ -64,6 +64,11 @@ fn a_hammer_that_strikes_beside_the_sensor_and_a_sensor_beside_the_impacts_are_o
 }
 
 #[test]
+fn a_sensor_that_goes_from_response_to_response_is_one_mass_and_not_three() {
+    named(&on(EffectKind::SensorMass, Place::Responses, &[0.012]), &eight_pairs(), 45, 0.02);
+}
+
+#[test]
 fn structural_damping_that_the_stated_ratios_were_measured_with_is_no_delay_of_a_channel() {
     let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
     let lossy = on(EffectKind::LossFactor, Place::Joint("J".into()), &[0.01]);

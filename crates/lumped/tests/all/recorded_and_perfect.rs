@@ -96,6 +96,15 @@ fn a_sensors_mass_loads_its_own_row_and_no_other() {
 }
 
 #[test]
+fn a_sensor_that_is_moved_loads_every_response_while_it_is_there() {
+    let each = r#"{"kind": "sensor_mass", "place": "response 4", "mass": 0.02}, {"kind": "sensor_mass", "place": "response 3", "mass": 0.02}"#;
+    let one = r#"{"kind": "sensor_mass", "place": "responses", "mass": 0.02}"#;
+    let [each, one] =
+        [each, one].map(|physics| frfs(&fixture(AS_STATED, "", physics), Instrument::AsRecorded));
+    (0..2).for_each(|frf| assert_equal(each.values(frf), one.values(frf)));
+}
+
+#[test]
 fn a_perfect_instrument_leaves_all_of_that_out() {
     let physics = r#"{"kind": "channel_gain", "place": "response 4", "factor": 0.8}, {"kind": "exponential_window", "place": "all", "decay": 8},
         {"kind": "sensor_mass", "place": "response 4", "mass": 0.02}, {"kind": "point_offset", "place": "4", "dx": 0.004}"#;
