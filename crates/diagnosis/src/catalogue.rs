@@ -37,7 +37,8 @@ struct Catalogue<'a> {
 }
 
 impl Catalogue<'_> {
-    /// Lists a kind at a place, in every degree of freedom that it can have there, where it has starts and is possible.
+    /// Lists a kind at a place, in every degree of freedom that it can have there, where it has starts and is
+    /// possible.
     fn add(&mut self, kind: EffectKind, place: Place, joint: Option<&Joint>) {
         if is_stated(self.fixture, kind, &place) {
             return;
@@ -112,13 +113,15 @@ impl Catalogue<'_> {
         let pairs = self.observation.pairs();
         let responses = sorted(pairs.iter().map(|pair| pair.response.to_string()));
         let references = sorted(pairs.iter().map(|pair| pair.reference.to_string()));
-        // With one reference only, its gain is that of all responses together: still a name of its own. With several, one hammer struck them all.
+        // With one reference only, its gain is that of all responses together: still a name of its own. With
+        // several, one hammer struck them all.
         let force = (references.len() > 1).then_some(Place::Force);
         let channels = responses.iter().cloned().map(Place::Response);
         for channel in channels.chain(references.into_iter().map(Place::Reference)).chain(force) {
             kinds(|spec| spec.place == Channel).for_each(|kind| self.add(kind, channel.clone(), None));
         }
-        // A filter of all responses alike, the one sensor's or the analyser's; a gain or a delay of all of them is one of the force.
+        // A filter of all responses alike, the one sensor's or the analyser's; a gain or a delay of all of
+        // them is one of the force.
         if responses.len() > 1 {
             let filters = kinds(|spec| spec.place == Channel).filter(|kind| !inverts(*kind));
             filters.for_each(|kind| self.add(kind, Place::Responses, None));
@@ -132,7 +135,8 @@ impl Catalogue<'_> {
         let points =
             pairs.iter().flat_map(|pair| [pair.response.point.clone(), pair.reference.point.clone()]);
         for point in sorted(points) {
-            // Where a point is both struck and read, its sensor or its impacts may be off by themselves: no hammer strikes a sensor.
+            // Where a point is both struck and read, its sensor or its impacts may be off by themselves: no
+            // hammer strikes a sensor.
             let at = |channel: &jointscope_spectra::Channel| {
                 channel.point == point && channel.dof == Dof::Translation
             };
@@ -154,7 +158,8 @@ impl Catalogue<'_> {
     }
 }
 
-/// Whether a fixture states what the name says that it leaves out: a strip's mass, that it shears, or that both its ends turn on what they are fixed to. What is wrong there is the quantity.
+/// Whether a fixture states what the name says that it leaves out: a strip's mass, that it shears, or that
+/// both its ends turn on what they are fixed to. What is wrong there is the quantity.
 fn is_stated(fixture: &Fixture, kind: EffectKind, place: &Place) -> bool {
     let states = |kind: EffectKind, place: &Place, dof: Option<Dof>| {
         fixture.physics().iter().any(|own| own.kind == kind && own.place == *place && own.dof == dof)
@@ -173,8 +178,8 @@ fn is_stated(fixture: &Fixture, kind: EffectKind, place: &Place) -> bool {
     }
 }
 
-/// Whether an effect of another kind says the very same of a quantity: a modulus is a factor of stiffness, a support's stiffer spring another support, a point that holds
-/// nothing an offset.
+/// Whether an effect of another kind says the very same of a quantity: a modulus is a factor of stiffness, a
+/// support's stiffer spring another support, a point that holds nothing an offset.
 pub(crate) fn has_a_name(fixture: &Fixture, quantity: &NamedQuantity, departure: f64) -> bool {
     match (quantity.owner, quantity.key) {
         (QuantityOwner::Joint(joint), QuantityKey::JointStiffness(..)) => {
@@ -194,7 +199,8 @@ pub(crate) fn has_a_name(fixture: &Fixture, quantity: &NamedQuantity, departure:
     }
 }
 
-/// The candidates and, of the quantities that a refit took beyond what chance makes, the `count` farthest: each may be wrong as it is stated.
+/// The candidates and, of the quantities that a refit took beyond what chance makes, the `count` farthest:
+/// each may be wrong as it is stated.
 pub(crate) fn with_wrong_quantities(
     candidates: &[Candidate],
     refitted: &Hypothesis,
@@ -252,7 +258,8 @@ fn body_at(fixture: &Fixture, place: &Place) -> Option<usize> {
     }
 }
 
-/// E/ρ of steel, aluminium and titanium alike, within 4 %, m²/s²: of a section whose area is not stated, EI tells ρI by it.
+/// E/ρ of steel, aluminium and titanium alike, within 4 %, m²/s²: of a section whose area is not stated, EI
+/// tells ρI by it.
 const MODULUS_OVER_DENSITY: f64 = 2.55e7;
 
 /// What there is at a place, of which starts are multiples.
@@ -266,7 +273,8 @@ struct Surroundings<'a> {
 }
 
 impl Surroundings<'_> {
-    /// Every combination of the starts of a kind's parameters; what shapes the effect (a frequency, an abscissa) varies more slowly than its size.
+    /// Every combination of the starts of a kind's parameters; what shapes the effect (a frequency, an
+    /// abscissa) varies more slowly than its size.
     fn starts(&self, kind: EffectKind) -> Vec<Vec<f64>> {
         let spec = kind.spec();
         let leading = spec.size.parameter;

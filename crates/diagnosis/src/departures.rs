@@ -28,7 +28,8 @@ impl Departure {
     }
 }
 
-/// The stated quantity that a hypothesis takes farthest, and by how many standard deviations; `None` where none is stated with one.
+/// The stated quantity that a hypothesis takes farthest, and by how many standard deviations; `None` where
+/// none is stated with one.
 pub(crate) fn farthest(hypothesis: &Hypothesis) -> Option<(&str, f64)> {
     let stated = hypothesis.tolerances().iter().enumerate().filter(|(_, t)| t.quantity.std.is_some());
     let all = stated.map(|(index, t)| (t.quantity.path.as_str(), hypothesis.departure(index).abs()));
@@ -45,7 +46,8 @@ pub(crate) fn departed(hypothesis: &Hypothesis, index: usize) -> bool {
     hypothesis.tolerances()[index].quantity.std.is_some() && hypothesis.departure(index).abs() > DEPARTED
 }
 
-/// Quantities that the refitted or the repaired model took farther from what is stated than chance does, the farthest first.
+/// Quantities that the refitted or the repaired model took farther from what is stated than chance does, the
+/// farthest first.
 pub(crate) fn departures([refitted, repaired]: &[Hypothesis; 2]) -> Vec<Departure> {
     let of = |(index, tolerance): (usize, &Tolerance)| {
         let deviations = repaired.restated(index).unwrap_or_else(|| repaired.departure(index));

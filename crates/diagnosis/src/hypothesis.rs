@@ -26,9 +26,11 @@ pub struct Hypothesis {
 }
 
 impl Hypothesis {
-    /// The fixture by itself, its own effects kept as they stand but for parameters with a deviation. `exact` takes bare numbers as exact.
+    /// The fixture by itself, its own effects kept as they stand but for parameters with a deviation. `exact`
+    /// takes bare numbers as exact.
     ///
-    /// Young's modulus and second moment of one beam enter as their product ([`Fixture::uncertain_quantities`]).
+    /// Young's modulus and second moment of one beam enter as their product
+    /// ([`Fixture::uncertain_quantities`]).
     pub fn nominal(fixture: &Fixture, exact: bool) -> Self {
         // A quantity that the fixture itself calls wrong has the value given for it.
         let called_wrong = |quantity: &NamedQuantity| {
@@ -55,7 +57,8 @@ impl Hypothesis {
         other
     }
 
-    /// The same with one more effect, at the parameters it is given with, or as near to them as is possible at its place.
+    /// The same with one more effect, at the parameters it is given with, or as near to them as is possible
+    /// at its place.
     pub fn with(&self, effect: Effect) -> Self {
         let mut more = self.clone();
         let wrong = match &effect.place {
@@ -104,7 +107,8 @@ impl Hypothesis {
         moved
     }
 
-    /// The same with `effect` in the fixture itself, where nothing moves it; `None` where the fixture cannot have it.
+    /// The same with `effect` in the fixture itself, where nothing moves it; `None` where the fixture cannot
+    /// have it.
     pub(crate) fn beside(&self, effect: Effect) -> Option<Self> {
         let mut physics = self.fixture.physics().to_vec();
         physics.push(effect);
@@ -112,7 +116,8 @@ impl Hypothesis {
         Some(Hypothesis { fixture: Arc::new(fixture), ..self.clone() })
     }
 
-    /// The same with its effects in the fixture itself, where nothing moves them; `None` where the fixture cannot have them.
+    /// The same with its effects in the fixture itself, where nothing moves them; `None` where the fixture
+    /// cannot have them.
     pub(crate) fn with_effects_in_place(&self) -> Option<Self> {
         let alone = (0..self.effect_count()).rev().fold(self.clone(), |rest, index| rest.without(index));
         self.effects().into_iter().try_fold(alone, |rest, effect| rest.beside(effect))
@@ -129,13 +134,15 @@ impl Hypothesis {
         self
     }
 
-    /// Where every coordinate stands: tolerances in deviations from the stated values, then the effects' free parameters.
+    /// Where every coordinate stands: tolerances in deviations from the stated values, then the effects' free
+    /// parameters.
     pub fn coordinates(&self) -> &[f64] {
         &self.coordinates
     }
 
-    /// The same hypothesis of another state of the structure: `fixture` with this one's effects beside its own, quantities of the same path where this
-    /// hypothesis has them, and all others as they are stated. `exact` takes bare numbers as exact.
+    /// The same hypothesis of another state of the structure: `fixture` with this one's effects beside its
+    /// own, quantities of the same path where this hypothesis has them, and all others as they are stated.
+    /// `exact` takes bare numbers as exact.
     pub fn in_fixture(&self, fixture: &Fixture, exact: bool) -> Self {
         let mut other = Hypothesis::nominal(fixture, exact);
         for (index, tolerance) in other.tolerances.iter().enumerate() {
@@ -175,8 +182,9 @@ impl Hypothesis {
         &self.tolerances
     }
 
-    /// Where tolerance `index` stands, in standard deviations (or tenths of its value where it is free): for masses and stiffnesses those of
-    /// the logarithm. A modal ratio's deviation is the one that it has beside these effects.
+    /// Where tolerance `index` stands, in standard deviations (or tenths of its value where it is free): for
+    /// masses and stiffnesses those of the logarithm. A modal ratio's deviation is the one that it has beside
+    /// these effects.
     pub fn departure(&self, index: usize) -> f64 {
         let precision = self.prior(index);
         self.coordinates[index] * if precision > 0.0 { precision.sqrt() } else { 1.0 }
@@ -201,7 +209,8 @@ impl Hypothesis {
             .sum()
     }
 
-    /// The same of the fixture's quantities alone: how far one that an effect calls wrong lies from what is stated says nothing against the others.
+    /// The same of the fixture's quantities alone: how far one that an effect calls wrong lies from what is
+    /// stated says nothing against the others.
     pub(crate) fn squared_departures_of_quantities(&self) -> f64 {
         let stated = self.parameters.iter().zip(&self.coordinates).take(self.tolerances.len());
         stated.map(|(parameter, at)| parameter.squared_departure(*at)).sum()
@@ -240,7 +249,8 @@ impl Hypothesis {
         &self.effects[index].1
     }
 
-    /// Standard deviations, as multiples of [`EXPECTED_ERROR`], that quantity of effect `index` is expected to be off by; `None` where the effect is about none.
+    /// Standard deviations, as multiples of [`EXPECTED_ERROR`], that quantity of effect `index` is expected
+    /// to be off by; `None` where the effect is about none.
     pub(crate) fn expected_error(&self, index: usize) -> Option<f64> {
         let (effect, parameters) = &self.effects[index];
         let is_about_one = effect.kind == EffectKind::QuantityError;
@@ -285,7 +295,8 @@ impl Hypothesis {
             let is_size = place == size.parameter || Some(place) == size.dashpot;
             let deviations = match parameter.transform {
                 _ if !is_size => continue,
-                // The size is the parameter, or a power of it: its relative deviation is that of the logarithm, or a multiple.
+                // The size is the parameter, or a power of it: its relative deviation is that of the
+                // logarithm, or a multiple.
                 Transform::Logarithmic { scale, .. } if none == 0.0 => (std * scale).recip(),
                 transform => {
                     let nothing = transform.coordinate(none).unwrap_or(0.0);
@@ -313,7 +324,8 @@ impl Hypothesis {
         fixture.with_physics(physics)
     }
 
-    /// Its effects without their dashpots, which leaves springs, masses and what no mode depends on; `None` where one dissipates by itself.
+    /// Its effects without their dashpots, which leaves springs, masses and what no mode depends on; `None`
+    /// where one dissipates by itself.
     pub(crate) fn without_dashpots(&self) -> Option<Vec<Effect>> {
         let mut effects = self.effects();
         for effect in &mut effects {
@@ -331,7 +343,8 @@ impl Hypothesis {
         self.without_dashpots().is_some_and(|effects| effects.iter().any(|effect| changes_modes(effect.kind)))
     }
 
-    /// Root mean square of the relative deviations to which the fixture states the damping of its modes; zero where they do not move.
+    /// Root mean square of the relative deviations to which the fixture states the damping of its modes; zero
+    /// where they do not move.
     pub(crate) fn deviation_of_damping(&self) -> f64 {
         use QuantityKey::{LossFactor, ModalRatio, RayleighMass, RayleighStiffness};
         let relative = |tolerance: &Tolerance| match tolerance.quantity {
@@ -364,7 +377,8 @@ impl Hypothesis {
     }
 }
 
-/// How a quantity moves beside an effect that modal ratios hold: of a stated ratio the viscous part may be anything down to none.
+/// How a quantity moves beside an effect that modal ratios hold: of a stated ratio the viscous part may be
+/// anything down to none.
 fn down_to_none(tolerance: &Tolerance) -> Parameter {
     let parameter = tolerance.parameter;
     match (tolerance.quantity.key, parameter.transform) {
@@ -381,7 +395,8 @@ fn is_spring_or_mass(kind: EffectKind) -> bool {
     matches!(kind, AddedMass | JointLength | JointMass | ShearDeformation | StiffnessChange)
 }
 
-/// Whether an effect is one of the structure, and not of the measuring chain or of what the fixture says where.
+/// Whether an effect is one of the structure, and not of the measuring chain or of what the fixture says
+/// where.
 fn changes_modes(kind: EffectKind) -> bool {
     !matches!(kind.spec().entry, Entry::Signal | Entry::Restated | Entry::Offset)
 }

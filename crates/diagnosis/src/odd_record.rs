@@ -1,4 +1,5 @@
-//! One record among several that is another multiple of what the fixture makes of it: its unit, range or sign is wrong, and no place of a structure is.
+//! One record among several that is another multiple of what the fixture makes of it: its unit, range or sign
+//! is wrong, and no place of a structure is.
 
 use crate::candidate::{Candidate, candidate};
 use crate::settings::statements::odd_record::{APART, FEWEST, OTHERS};
@@ -17,7 +18,8 @@ pub struct OddRecord {
     pub others: [f64; 2],
 }
 
-/// The multiple of what is `predicted` that a record is, by the median over its lines: resonances that are off by what is left out count little so. `None` where it has no values.
+/// The multiple of what is `predicted` that a record is, by the median over its lines: resonances that are
+/// off by what is left out count little so. `None` where it has no values.
 fn multiple(measured: &[Complex64], predicted: &[Complex64]) -> Option<f64> {
     let both = measured.iter().zip(predicted);
     let in_phase: f64 =
@@ -34,13 +36,15 @@ impl OddRecord {
         OddRecord::among(pairs, &records.map(|(m, p)| multiple(m, p)).collect::<Option<Vec<f64>>>()?)
     }
 
-    /// The gain of that record as a name: no other record may have one of its own where the fixture does not say so.
+    /// The gain of that record as a name: no other record may have one of its own where the fixture does not
+    /// say so.
     pub(crate) fn as_a_name(&self) -> Candidate {
         let place = Place::Record(self.frf.to_string());
         candidate(EffectKind::ChannelGain, place, None, vec![vec![self.factor]])
     }
 
-    /// The one of these FRFs whose multiple stands farther from those of the others than these from each other, by much.
+    /// The one of these FRFs whose multiple stands farther from those of the others than these from each
+    /// other, by much.
     pub fn among(pairs: &[FrfPair], multiples: &[f64]) -> Option<Self> {
         if pairs.len() < FEWEST {
             return None;
@@ -73,7 +77,8 @@ mod tests {
         "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": MODULUS, "second_moment": 4e-10 } } },
         "damping": { "modal_ratios": [0.006] } }"#;
 
-    /// Four FRFs of blocks whose strip has this modulus, the one at a place multiplied, and what the blocks of the fixture make of them.
+    /// Four FRFs of blocks whose strip has this modulus, the one at a place multiplied, and what the blocks
+    /// of the fixture make of them.
     fn odd(modulus: &str, at: usize, factor: f64) -> Option<OddRecord> {
         let fixture = |modulus: &str| Fixture::from_json(&BLOCKS.replace("MODULUS", modulus)).unwrap();
         let pairs = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")].map(|(o, i)| FrfPair::transverse(o, i));

@@ -1,5 +1,5 @@
-//! The ways to a diagnosis: by the noise of the lines, by the error of the model, by what has changed since a baseline; and which of them a recording
-//! asks for.
+//! The ways to a diagnosis: by the noise of the lines, by the error of the model, by what has changed since a
+//! baseline; and which of them a recording asks for.
 
 use crate::evidence::{self, excess, explains, nothing_can_be_stated, upper_tail};
 use crate::finding::{Finding, Tried};
@@ -62,8 +62,8 @@ pub(crate) fn judged(
         return Ok(by_lines(fitter, refitted, given, start, None, division.as_ref()));
     }
     let without_effects = refitted.clone().with_wrong_quantities(fitter);
-    // Where the fixture as refitted leaves more than noise, the comparison by modes says whether the model itself is in error: if it is, the noise
-    // of the lines decides nothing.
+    // Where the fixture as refitted leaves more than noise, the comparison by modes says whether the model
+    // itself is in error: if it is, the noise of the lines decides nothing.
     let may_err = !fixture.model_error().is_exact();
     let modal = match may_err && without_effects.lacks_much(fitter, &without_effects.refitted) {
         true => fitter.observation.work().within(fitter.settings.modal.share, || {
@@ -91,8 +91,9 @@ pub(crate) fn judged(
     })
 }
 
-/// The diagnosis by lines or by modes, whichever the comparison by modes calls for. What explains the modes is stated where lines find nothing: for good where it leaves little of
-/// them or these come down to the noise by quantities far off alone, else as a part.
+/// The diagnosis by lines or by modes, whichever the comparison by modes calls for. What explains the modes
+/// is stated where lines find nothing: for good where it leaves little of them or these come down to the
+/// noise by quantities far off alone, else as a part.
 fn routed(
     fitter: &Fitter,
     without_effects: &Search,
@@ -117,24 +118,27 @@ fn routed(
     }
 }
 
-/// Where lines set out from after a comparison by modes, and whether what explains the modes leaves little of the lines; `None` where lines have no say.
+/// Where lines set out from after a comparison by modes, and whether what explains the modes leaves little of
+/// the lines; `None` where lines have no say.
 fn from_modes<'a>(
     fitter: &Fitter,
     without_effects: &Search,
     modal: &'a ModalJudgement,
 ) -> Option<(Start<'a>, bool)> {
-    // What explains the lines down to their noise without any error of the model needs none: found among the modes, or, where these are dubious, by a
-    // search on lines.
+    // What explains the lines down to their noise without any error of the model needs none: found among the
+    // modes, or, where these are dubious, by a search on lines.
     if let Some(exact) = modal.exact(fitter) {
         return (!modal.tells_from(fitter, &exact.fit.hypothesis))
             .then_some((Start::Modes(modal, exact), true));
     }
-    // Where errors of the usual size do not explain the modes, these may have rested in a false minimum, and the names that they hold most probable, or quantities that
-    // are wrong, explain the lines down to their noise.
+    // Where errors of the usual size do not explain the modes, these may have rested in a false minimum, and
+    // the names that they hold most probable, or quantities that are wrong, explain the lines down to their
+    // noise.
     if let Some(found) = without_effects.explained_among(fitter, modal.in_question(fitter)) {
         return Some((Start::Found(Box::new(found)), false));
     }
-    // Where a free fit that needed all it may leaves no doubt of the names, lines find nothing better. Where modes find none and lines lack little, one of all names may do.
+    // Where a free fit that needed all it may leaves no doubt of the names, lines find nothing better. Where
+    // modes find none and lines lack little, one of all names may do.
     let little = fitter.settings.modal.slight * fitter.observation.degrees() as f64;
     let may = (modal.is_dubious(fitter)
         || modal.is_unexplained() && without_effects.refitted.objective < little)
@@ -143,8 +147,8 @@ fn from_modes<'a>(
     let search = || Search::searched(fitter, without_effects.clone());
     let searched = may.then(|| fitter.observation.work().within_rest(OF_DOUBTS, search));
     let explained = searched.as_ref().is_some_and(|search| explains(fitter, &search.repaired, true));
-    // Modes that need no error of the model, or that do not tell all there is, beside lines that are not explained: it is not the modes of the model that
-    // are in error.
+    // Modes that need no error of the model, or that do not tell all there is, beside lines that are not
+    // explained: it is not the modes of the model that are in error.
     let tells_all = !modal.is_incomplete_but_usable(fitter) || modal.has_no_rival(fitter);
     let not_in_error = modal.search.best.exact || modal.has_right_modes() || !tells_all;
     if !explained && !not_in_error {
@@ -158,7 +162,8 @@ fn from_modes<'a>(
     })
 }
 
-/// What nothing explained, once more from the laws that were read at the places which explain most of it: where free scalars find a way, a search is to find it too.
+/// What nothing explained, once more from the laws that were read at the places which explain most of it:
+/// where free scalars find a way, a search is to find it too.
 fn as_located(
     fitter: &Fitter,
     without_effects: Search,
@@ -195,7 +200,8 @@ pub(crate) struct Parts {
 }
 
 impl Parts {
-    /// The same on all FRFs of a recording of which a part was searched: models that were fitted to lines are fitted to all of them.
+    /// The same on all FRFs of a recording of which a part was searched: models that were fitted to lines are
+    /// fitted to all of them.
     pub(crate) fn on_all(mut self, fitter: &Fitter) -> Self {
         let by_lines = self.model_error.is_none();
         let again = |fit: &Fit| match by_lines {
@@ -222,7 +228,8 @@ pub(crate) fn chance(observation: &Observation, fit: &Fit) -> (f64, f64) {
     (chi2_per_dof, upper_tail(excess))
 }
 
-/// The diagnosis where the noise of the lines decides, unless what they ask for imitates an error of the model.
+/// The diagnosis where the noise of the lines decides, unless what they ask for imitates an error of the
+/// model.
 fn by_lines(
     fitter: &Fitter,
     without_effects: Search,
@@ -236,7 +243,8 @@ fn by_lines(
         let division = division.filter(|_| observation.work().allows(UNSEEN))?;
         blind(&fitter.on(&division.seen), given, of_whole)
     };
-    // What sees less goes first where nothing is known, and the whole recording only has to confirm or correct it.
+    // What sees less goes first where nothing is known, and the whole recording only has to confirm or
+    // correct it.
     let anew = matches!(start, Start::Anew);
     let first = if anew { on_what_is_seen(None) } else { None };
     fitter.watch.stage("searching the whole recording");
@@ -273,7 +281,8 @@ fn by_lines(
     if let Some(modal) = modal.filter(|modal| modal.tells_from(fitter, &search.repaired.hypothesis)) {
         return by_modes(fitter, &search, modal, division);
     }
-    // What the best hypotheses leave may say that none of them is right: they would only adapt the model to the recording.
+    // What the best hypotheses leave may say that none of them is right: they would only adapt the model to
+    // the recording.
     let doubtful = findings.iter().any(|finding| finding.stated() < settings.evidence.stated);
     let findings = if doubtful { Vec::new() } else { findings };
     if findings.is_empty() {
@@ -314,8 +323,8 @@ fn by_lines(
     }
 }
 
-/// The search that does not see what is held out: that must not have chosen the names either. Where the search of the whole recording set out from its modes,
-/// `of_whole`, it may try the names that these told.
+/// The search that does not see what is held out: that must not have chosen the names either. Where the
+/// search of the whole recording set out from its modes, `of_whole`, it may try the names that these told.
 fn blind(fitter: &Fitter, given: Given, of_whole: Option<&ModalJudgement>) -> Option<Search> {
     fitter.watch.stage("searching without the lines that are held out");
     let refitted = given.without_effects(fitter)?;
@@ -342,7 +351,8 @@ fn blind(fitter: &Fitter, given: Given, of_whole: Option<&ModalJudgement>) -> Op
     })
 }
 
-/// The diagnosis where the model's own error decides. `on_lines` is what lines made of the recording: the fixture refitted, or a search.
+/// The diagnosis where the model's own error decides. `on_lines` is what lines made of the recording: the
+/// fixture refitted, or a search.
 fn by_modes(
     fitter: &Fitter,
     on_lines: &Search,

@@ -1,4 +1,5 @@
-//! Which effects a recording needs: forward selection with exchange, every candidate fitted with the tolerances.
+//! Which effects a recording needs: forward selection with exchange, every candidate fitted with the
+//! tolerances.
 
 use crate::candidate::Candidate;
 use crate::catalogue::{catalogue, with_wrong_quantities};
@@ -31,7 +32,8 @@ pub struct Search {
     pub(crate) is_sure: bool,
 }
 
-/// The gain of the record that is another multiple of what the fixture as it stands makes of it than all others, as a name; that of a channel where it is the only record.
+/// The gain of the record that is another multiple of what the fixture as it stands makes of it than all
+/// others, as a name; that of a channel where it is the only record.
 fn odd_record(observation: &Observation, nominal: &Fit) -> Option<Candidate> {
     let pairs = observation.pairs();
     let odd = OddRecord::of(pairs, observation.values(), &nominal.predicted)?;
@@ -42,7 +44,8 @@ fn odd_record(observation: &Observation, nominal: &Fit) -> Option<Candidate> {
 }
 
 impl Search {
-    /// The fixture as it stands, not refitted, and nothing searched for yet. `None` where it predicts no finite FRFs.
+    /// The fixture as it stands, not refitted, and nothing searched for yet. `None` where it predicts no
+    /// finite FRFs.
     pub(crate) fn as_stated(fitter: &Fitter, fixture: &Fixture, exact: bool) -> Option<Self> {
         let nominal = Fit::at(Hypothesis::nominal(fixture, exact), fitter.observation)?;
         let mut candidates = catalogue(fixture, fitter.observation);
@@ -58,7 +61,8 @@ impl Search {
         })
     }
 
-    /// The fixture as it stands and refitted, and nothing searched for yet. `None` where it predicts no finite FRFs.
+    /// The fixture as it stands and refitted, and nothing searched for yet. `None` where it predicts no
+    /// finite FRFs.
     pub(crate) fn without_effects(fitter: &Fitter, fixture: &Fixture, exact: bool) -> Option<Self> {
         let start = Search::as_stated(fitter, fixture, exact)?;
         fitter.watch.stage("refitting the fixture within its tolerances");
@@ -79,15 +83,16 @@ impl Search {
         Search { candidates, ..self }
     }
 
-    /// The fixture with the gain of the one record that stands alone, where that explains the lines down to their noise: all that an odd record spoils is spared then.
+    /// The fixture with the gain of the one record that stands alone, where that explains the lines down to
+    /// their noise: all that an odd record spoils is spared then.
     pub(crate) fn explained_by_odd_record(&self, fitter: &Fitter) -> Option<Search> {
         let odd = odd_record(fitter.observation, &self.nominal)?;
         let repaired = fitter.refitted(&self.nominal.hypothesis.with(odd.effect(0)))?;
         explains(fitter, &repaired, true).then(|| Search { repaired, ..self.clone() })
     }
 
-    /// The fixture with one sensor's mass that goes from response to response, where that explains the lines down to their noise: the poles that all FRFs share are of no
-    /// structure then, and modes tell nothing.
+    /// The fixture with one sensor's mass that goes from response to response, where that explains the lines
+    /// down to their noise: the poles that all FRFs share are of no structure then, and modes tell nothing.
     pub(crate) fn explained_by_moved_sensor(&self, fitter: &Fitter) -> Option<Search> {
         let is_moved = |c: &&Candidate| c.kind == EffectKind::SensorMass && c.place == Place::Responses;
         let sensor = self.candidates.iter().find(is_moved)?;
@@ -97,7 +102,8 @@ impl Search {
         explains(fitter, &repaired, true).then(|| Search { repaired, ..self.clone() })
     }
 
-    /// What explains the lines down to their noise among few names, for a share of all work; `None` where nothing does.
+    /// What explains the lines down to their noise among few names, for a share of all work; `None` where
+    /// nothing does.
     pub(crate) fn explained_among(&self, fitter: &Fitter, names: Vec<Candidate>) -> Option<Search> {
         if names.is_empty() {
             return None;
@@ -136,8 +142,9 @@ impl Search {
         search
     }
 
-    /// As [`Search::searched`], from `start`, which is the fixture as it stands and refitted, and from what was found elsewhere: in a part of
-    /// the observation, or among its modes. The effects are fitted to the whole, exchanged, dropped and added to as the whole demands.
+    /// As [`Search::searched`], from `start`, which is the fixture as it stands and refitted, and from what
+    /// was found elsewhere: in a part of the observation, or among its modes. The effects are fitted to the
+    /// whole, exchanged, dropped and added to as the whole demands.
     pub(crate) fn continued(fitter: &Fitter, start: Search, part: &Search) -> Self {
         Search::continued_until(fitter, start, part, |_| false)
     }
@@ -161,7 +168,8 @@ impl Search {
             && let Some(repaired) = local(&part.repaired)
         {
             search.repaired = repaired;
-            // As many effects as there may be that explain neither the part nor the whole need not be exchanged once more.
+            // As many effects as there may be that explain neither the part nor the whole need not be
+            // exchanged once more.
             let full = found >= fitter.settings.selection.effects;
             if !full || !nothing_can_be_stated(fitter, &search.repaired, search.candidates.len()) {
                 search.improve(fitter);
@@ -190,7 +198,8 @@ impl Search {
             let best = self.ranked(fitter, &self.repaired).into_iter().next().map(|(_, fit)| fit);
             let Some(better) = best.filter(|best| self.is_worth(fitter, best, &self.repaired)) else { break };
             self.repaired = better;
-            // Beside what modes are sure of, an effect that they do not need is not worth being fitted closely.
+            // Beside what modes are sure of, an effect that they do not need is not worth being fitted
+            // closely.
             if self.is_sure && led_astray(self) {
                 break;
             }
@@ -209,7 +218,8 @@ impl Search {
         self.merge(fitter);
     }
 
-    /// Puts one effect in the stead of several on channels that are together exactly that one, where it does as well: no exchange of one for another leads there.
+    /// Puts one effect in the stead of several on channels that are together exactly that one, where it does
+    /// as well: no exchange of one for another leads there.
     fn merge(&mut self, fitter: &Fitter) {
         let several =
             as_one(&self.repaired.hypothesis.effects(), &self.candidates, fitter.observation.pairs());
@@ -227,8 +237,8 @@ impl Search {
         }
     }
 
-    /// Fits the effects that were found again from the nominal quantities: along a flat valley the way that led here may have
-    /// stopped short.
+    /// Fits the effects that were found again from the nominal quantities: along a flat valley the way that
+    /// led here may have stopped short.
     fn polish(&mut self, fitter: &Fitter) {
         let found = &self.repaired.hypothesis;
         let fits = [
@@ -249,7 +259,8 @@ impl Search {
         gain > needed_gain(settings, cost(with) - cost(without), self.candidates.len())
     }
 
-    /// Whether a fit may still lack something large; what fits already can only lack something small, which the local search finds.
+    /// Whether a fit may still lack something large; what fits already can only lack something small, which
+    /// the local search finds.
     pub(crate) fn lacks_much(&self, fitter: &Fitter, fit: &Fit) -> bool {
         let (observation, settings) = (fitter.observation, &fitter.settings.selection);
         let degrees = observation.degrees() as f64;
@@ -263,7 +274,8 @@ impl Search {
             || !deviates_by_chance(fitter, &fit.hypothesis)
     }
 
-    /// Fits of `base` with one more effect, best first by objective and penalty of parameters, with the candidate's index.
+    /// Fits of `base` with one more effect, best first by objective and penalty of parameters, with the
+    /// candidate's index.
     fn ranked(&self, fitter: &Fitter, base: &Fit) -> Vec<(usize, Fit)> {
         // What gains less than the price of looking is not believed.
         let limit = base.objective - needed_gain(&fitter.settings.selection, 0.0, self.candidates.len());
@@ -273,13 +285,15 @@ impl Search {
         self.ranking(fitter).of(&base.hypothesis, self.lacks_much(fitter, base), limit)
     }
 
-    /// As [`Search::ranked`], for a `base` whose quantities stand already where the effect that is looked for would leave them: there the
-    /// fixture alone does badly, and whatever serves as well takes few steps. Fits that will not come near `limit` are left unfinished.
+    /// As [`Search::ranked`], for a `base` whose quantities stand already where the effect that is looked for
+    /// would leave them: there the fixture alone does badly, and whatever serves as well takes few steps.
+    /// Fits that will not come near `limit` are left unfinished.
     pub(crate) fn look_alikes(&self, fitter: &Fitter, base: &Hypothesis, limit: f64) -> Vec<(usize, Fit)> {
         Ranking { excluded: &self.told_apart, ..self.ranking(fitter) }.look_alikes(base, limit)
     }
 
-    /// The same for an effect that quantities make up for, but for little, where `base` stands: whatever explains that little is small too, and near.
+    /// The same for an effect that quantities make up for, but for little, where `base` stands: whatever
+    /// explains that little is small too, and near.
     pub(crate) fn small_look_alikes(
         &self,
         fitter: &Fitter,
@@ -330,13 +344,14 @@ impl Search {
         }
     }
 
-    /// Drops effects that no longer earn their place, the last one included: from the quantities that the effect led to, the
-    /// fixture alone may do as well, where its own refit had ended in a false minimum.
+    /// Drops effects that no longer earn their place, the last one included: from the quantities that the
+    /// effect led to, the fixture alone may do as well, where its own refit had ended in a false minimum.
     pub(crate) fn prune(&mut self, fitter: &Fitter) {
         let settings = &fitter.settings.selection;
         let mut index = 0;
         while index < self.repaired.hypothesis.effect_count() {
-            // A quarter of an effect misses a sixteenth of what the whole does: what that makes clear needs no more fits.
+            // A quarter of an effect misses a sixteenth of what the whole does: what that makes clear needs
+            // no more fits.
             let inflation = self.repaired.inflation(fitter.observation);
             let needed = settings.clear * inflation * needed_gain(settings, 0.0, self.candidates.len());
             let faded = fitter.faded(&self.repaired.hypothesis, index, self.repaired.objective + needed);
