@@ -87,13 +87,18 @@ impl Hypothesis {
         fewer.listed()
     }
 
+    /// Whether it has effects whose losses modal ratios hold.
+    fn has_losses(&self) -> bool {
+        self.effects.iter().any(|(effect, _)| effect.kind.spec().within_modal_ratios)
+    }
+
     /// The list of parameters follows from tolerances and effects.
     fn listed(mut self) -> Self {
-        let is_in_ratios = self.effects.iter().any(|(effect, _)| effect.kind.spec().within_modal_ratios);
-        let tolerances = self.tolerances.iter().map(|tolerance| match is_in_ratios {
-            true => down_to_none(tolerance),
-            false => tolerance.parameter,
-        });
+        let lost = match self.has_losses() {
+            true => self.effects().iter().map(ratio_of_losses).fold(0.0, f64::max),
+            false => 0.0,
+        };
+        let tolerances = self.tolerances.iter().map(|tolerance| less_losses(tolerance, lost));
         let free = self.effects.iter().flat_map(|(_, all)| all).copied().filter(Parameter::is_free);
         self.parameters = tolerances.chain(free).collect();
         self
@@ -373,17 +378,22 @@ impl Hypothesis {
         {
             *coordinate = parameter.clamp(*coordinate + step);
         }
-        next
+        if next.has_losses() { next.listed() } else { next }
     }
 }
 
-/// How a quantity moves beside an effect that modal ratios hold: of a stated ratio the viscous part may be
-/// anything down to none.
-fn down_to_none(tolerance: &Tolerance) -> Parameter {
+/// The most that a loss factor may add to a modal ratio: half of it, where all strain is in that joint.
+fn ratio_of_losses(effect: &Effect) -> f64 {
+    if effect.kind.spec().within_modal_ratios { 0.5 * effect.value(0) } else { 0.0 }
+}
+
+/// How a quantity moves beside losses that modal ratios hold: of a stated ratio the viscous part may be less
+/// by them, down to none.
+fn less_losses(tolerance: &Tolerance, lost: f64) -> Parameter {
     let parameter = tolerance.parameter;
     match (tolerance.quantity.key, parameter.transform) {
         (QuantityKey::ModalRatio(_), Transform::Linear { centre, scale }) if parameter.precision > 0.0 => {
-            parameter.with_precision((1.0 + (centre / scale).powi(2)).recip())
+            parameter.with_precision((1.0 + (lost.min(centre) / scale).powi(2)).recip())
         }
         _ => parameter,
     }

@@ -15,7 +15,7 @@ pub(crate) fn needed_gain(settings: &SelectionSettings, parameters: f64, candida
 /// resolvable values, and what is rare has the odds against it.
 pub(crate) fn parameter_penalty(settings: &SelectionSettings, hypothesis: &Hypothesis) -> f64 {
     let ranges: f64 = hypothesis.effects().iter().map(|effect| effect.kind.spec().range_penalty).sum();
-    // A modal ratio that may be anything down to none is less probable where it stays as stated.
+    // A modal ratio that may be less by what an effect dissipates is less probable where it stays as stated.
     let widened: f64 = (0..hypothesis.tolerances().len())
         .map(|index| hypothesis.prior(index))
         .filter(|precision| *precision > 0.0)
