@@ -57,9 +57,12 @@ pub(crate) fn judged(
     let division = Division::of(fitter.observation, options)?;
     let given = Given { fixture, exact: options.exact };
     let refitted = given.without_effects(fitter).ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
-    if let Some(found) = refitted.explained_by_odd_record(fitter) {
+    let from_found = |without_effects: Search, found: Search| {
         let start = Start::Found(Box::new(found));
-        return Ok(by_lines(fitter, refitted, given, start, None, division.as_ref()));
+        by_lines(fitter, without_effects, given, start, None, division.as_ref())
+    };
+    if let Some(found) = refitted.explained_by_odd_record(fitter) {
+        return Ok(from_found(refitted, found));
     }
     let without_effects = refitted.clone().with_wrong_quantities(fitter);
     // Where the fixture as refitted leaves more than noise, the comparison by modes says whether the model
@@ -79,8 +82,7 @@ pub(crate) fn judged(
     };
     let moved = modal.as_ref().filter(|modal| modal.is_unexplained());
     if let Some(found) = moved.and_then(|_| without_effects.explained_by_moved_sensor(fitter)) {
-        let start = Start::Found(Box::new(found));
-        return Ok(by_lines(fitter, without_effects, given, start, None, division.as_ref()));
+        return Ok(from_found(without_effects, found));
     }
     let parts = routed(fitter, &without_effects, given, modal.as_ref(), division.as_ref());
     Ok(match parts.verdict {

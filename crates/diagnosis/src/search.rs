@@ -86,18 +86,21 @@ impl Search {
     /// The fixture with the gain of the one record that stands alone, where that explains the lines down to
     /// their noise: all that an odd record spoils is spared then.
     pub(crate) fn explained_by_odd_record(&self, fitter: &Fitter) -> Option<Search> {
-        let odd = odd_record(fitter.observation, &self.nominal)?;
-        let repaired = fitter.refitted(&self.nominal.hypothesis.with(odd.effect(0)))?;
-        explains(fitter, &repaired, true).then(|| Search { repaired, ..self.clone() })
+        self.explained_by(fitter, &odd_record(fitter.observation, &self.nominal)?)
     }
 
     /// The fixture with one sensor's mass that goes from response to response, where that explains the lines
     /// down to their noise: the poles that all FRFs share are of no structure then, and modes tell nothing.
     pub(crate) fn explained_by_moved_sensor(&self, fitter: &Fitter) -> Option<Search> {
         let is_moved = |c: &&Candidate| c.kind == EffectKind::SensorMass && c.place == Place::Responses;
-        let sensor = self.candidates.iter().find(is_moved)?;
-        let fit = |start: usize| fitter.refitted(&self.nominal.hypothesis.with(sensor.effect(start)));
-        let fits = (0..sensor.starts.len()).filter_map(fit);
+        self.explained_by(fitter, self.candidates.iter().find(is_moved)?)
+    }
+
+    /// The fixture with this name alone, from each of its starts, where that explains the lines down to their
+    /// noise.
+    fn explained_by(&self, fitter: &Fitter, name: &Candidate) -> Option<Search> {
+        let fit = |start: usize| fitter.refitted(&self.nominal.hypothesis.with(name.effect(start)));
+        let fits = (0..name.starts.len()).filter_map(fit);
         let repaired = fits.min_by(|a, b| a.objective.total_cmp(&b.objective))?;
         explains(fitter, &repaired, true).then(|| Search { repaired, ..self.clone() })
     }
