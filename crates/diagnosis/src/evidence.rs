@@ -2,18 +2,13 @@
 
 use crate::fit::Fit;
 use crate::fitter::Fitter;
+use crate::observation::excess;
 use crate::penalty::parameter_penalty;
 use crate::settings::Settings;
 use crate::settings::evidence::strictly::{MOST_EXCESS, UNCERTAINTY_SHARE};
 use crate::settings::evidence::unlisted::LEAST_COST;
 use crate::{Hypothesis, Observation};
 use statrs::distribution::{ContinuousCDF, Normal};
-
-/// Standard deviations by which χ² per degree of freedom exceeds one, the relative uncertainty of the noise's
-/// variances included.
-pub(crate) fn excess(chi2_per_dof: f64, degrees: usize, noise_uncertainty: f64) -> f64 {
-    (chi2_per_dof - 1.0) / (2.0 / degrees.max(1) as f64).sqrt().hypot(noise_uncertainty)
-}
 
 /// χ² per degree of freedom up to which a fit leaves no more than noise.
 pub(crate) fn explained(observation: &Observation, settings: &Settings) -> f64 {
@@ -39,7 +34,7 @@ pub(crate) fn cost(fitter: &Fitter, fit: &Fit, inflation: f64) -> f64 {
 fn unlisted(fitter: &Fitter, best: &Fit) -> f64 {
     let Fitter { observation, settings, .. } = fitter;
     let chi2_per_dof = best.chi2_per_dof(observation);
-    let misfit = excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty()).max(0.0);
+    let misfit = observation.excess(chi2_per_dof).max(0.0);
     let company = best.hypothesis.effect_count().saturating_sub(1) as f64;
     let cost = settings.evidence.unlisted - settings.evidence.company * company - misfit * misfit;
     (-0.5 * cost.max(LEAST_COST)).exp()

@@ -145,15 +145,29 @@ impl Hypothesis {
         &self.coordinates
     }
 
-    /// The same hypothesis of another state of the structure: `fixture` with this one's effects beside its
-    /// own, quantities of the same path where this hypothesis has them, and all others as they are stated.
-    /// `exact` takes bare numbers as exact.
+    /// The same hypothesis of a fixture that describes the structure as it is here, with more in it:
+    /// `fixture` with this one's effects beside its own, quantities of the same path where this hypothesis
+    /// has them, and all others as they are stated. `exact` takes bare numbers as exact.
     pub fn in_fixture(&self, fixture: &Fixture, exact: bool) -> Self {
+        self.carried_to(fixture, exact, |_| true)
+    }
+
+    /// The same hypothesis of another state of the structure, as `fixture` describes it: with a mass on it,
+    /// off its supports. Modal damping ratios are those of an assembly as it was tested; in another state
+    /// they are others, as they are stated of it.
+    pub fn in_state(&self, fixture: &Fixture, exact: bool) -> Self {
+        self.carried_to(fixture, exact, |tolerance| !tolerance.is_of_one_state())
+    }
+
+    fn carried_to(&self, fixture: &Fixture, exact: bool, stays: impl Fn(&Tolerance) -> bool) -> Self {
         let mut other = Hypothesis::nominal(fixture, exact);
-        for (index, tolerance) in other.tolerances.iter().enumerate() {
+        for (index, tolerance) in other.tolerances.iter().enumerate().filter(|(_, own)| stays(own)) {
             let same = |own: &Tolerance| own.quantity.path == tolerance.quantity.path;
             if let Some(own) = self.tolerances.iter().position(same) {
-                other.coordinates[index] = self.coordinates[own];
+                other.coordinates[index] = match self.tolerances[own].parameter.transform {
+                    transform if transform == tolerance.parameter.transform => self.coordinates[own],
+                    _ => tolerance.coordinate(self.tolerances[own].value(self.coordinates[own])),
+                };
             }
         }
         let moving = self.coordinates[self.tolerances.len()..].iter();

@@ -228,6 +228,12 @@ impl Observation {
         2 * self.weight.iter().filter(|w| **w > 0.0).count()
     }
 
+    /// Standard deviations by which χ² per degree of freedom of these FRFs exceeds one, the relative
+    /// uncertainty of the noise's variances included.
+    pub fn excess(&self, chi2_per_dof: f64) -> f64 {
+        excess(chi2_per_dof, self.degrees(), self.noise_uncertainty())
+    }
+
     /// The weight of value `index` when a share `epsilon` of the measured, the modelled and some of the local
     /// level counts as noise too: sharp peaks then do not decide where a fit goes.
     pub(crate) fn inflated(&self, index: usize, modelled: Complex64, epsilon: f64) -> f64 {
@@ -291,4 +297,10 @@ impl Observation {
         let normalised: Vec<Complex64> = residual.map(|(r, weight)| r * weight.sqrt()).collect();
         autocorrelation(&normalised, self.lines().len())
     }
+}
+
+/// Standard deviations by which χ² per degree of freedom exceeds one, the relative uncertainty of the noise's
+/// variances included.
+pub(crate) fn excess(chi2_per_dof: f64, degrees: usize, noise_uncertainty: f64) -> f64 {
+    (chi2_per_dof - 1.0) / (2.0 / degrees.max(1) as f64).sqrt().hypot(noise_uncertainty)
 }

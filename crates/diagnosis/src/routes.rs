@@ -1,7 +1,7 @@
 //! The ways to a diagnosis: by the noise of the lines, by the error of the model, by what has changed since a
 //! baseline; and which of them a recording asks for.
 
-use crate::evidence::{self, excess, explains, nothing_can_be_stated, upper_tail};
+use crate::evidence::{self, explains, nothing_can_be_stated, upper_tail};
 use crate::finding::{Finding, Tried};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
@@ -226,8 +226,7 @@ impl Parts {
 /// χ² per degree of freedom that a fit leaves, and the probability of one as large by chance.
 pub(crate) fn chance(observation: &Observation, fit: &Fit) -> (f64, f64) {
     let chi2_per_dof = fit.chi2_per_dof(observation);
-    let excess = excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty());
-    (chi2_per_dof, upper_tail(excess))
+    (chi2_per_dof, upper_tail(observation.excess(chi2_per_dof)))
 }
 
 /// The diagnosis where the noise of the lines decides, unless what they ask for imitates an error of the

@@ -134,7 +134,7 @@ pub use comparison_file::comparison_file;
 pub use diagnosis_file::diagnosis_file;
 pub use frf_files::{checked_frfs, fitted_frfs, model_frfs, rebuilt_frfs};
 pub use modes_file::modes_file;
-pub use plan_file::plan_file;
+pub use plan_file::{plan_file, weighed_file};
 pub use stiffness_file::{joint_file, joints_file, stiffness_file};
 
 /// Why the bytes of a file are no recording of a fixture.

@@ -1,24 +1,57 @@
 //! Names weighed by one more test, of the structure in another state: with a known mass, on another support.
 //!
-//! The two tests have the structure's quantities and the name's parameters in common. What the first one
-//! tells of them, near its fit a normal distribution with its full covariance, is what is known beforehand
-//! when the second is fitted; so nothing counts twice.
+//! The two tests have the structure's quantities and the name's parameters in common, and modal damping ratios
+//! not: those are of an assembly as it was tested. What the first one tells of what they share, near its fit a
+//! normal distribution with its full covariance, is what is known beforehand when the second is fitted; so
+//! nothing counts twice. What no name meets in the second test is none of these names' doing: it counts as
+//! noise, makes physics that none covers likelier, and is told.
 
 use crate::PlanError;
 use crate::candidates;
 use crate::expected_noise::ExpectedNoise;
-use crate::names::{Name, NameNow, Names, Remaining, carried};
+use crate::model_error::ModelErrorNoise;
+use crate::names::{Name, Names, Remaining, WeighedName, carried};
 use crate::plan::PlanOptions;
 use crate::planned_test::PlannedTest;
+use crate::says;
+use crate::settings::further::{MISFIT, MOST_UNLISTED};
+use crate::settings::outcome::SURE;
 use jointscope_diagnosis::{Hypothesis, Linearisation, Observation, with_idle_points_exact};
 use jointscope_fixture::Fixture;
-use jointscope_inference::{DerivativePrecision, LeastSquares, NormalEquations, Settings, descend, each};
+use jointscope_inference::{
+    DerivativePrecision, LeastSquares, NormalEquations, Settings, descend, each, variance_inflation,
+};
 use jointscope_spectra::FrfPair;
 use jointscope_wording::effect_name;
 use num_complex::Complex64;
+use serde::Serialize;
 
-/// The names that a diagnosis has left, with the probabilities that `further`, the FRFs of the structure as
-/// the fixture beside them describes it, leaves them together with the present ones; the most probable first.
+/// The names that a diagnosis has left, weighed by a further test.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Weighed {
+    /// The answer in one sentence.
+    pub says: String,
+    /// The names, the most probable first. They sum to less than one: the rest is something not listed.
+    pub names: Vec<WeighedName>,
+    /// χ² per degree of freedom that the best name leaves of the further test.
+    pub chi2_per_dof: f64,
+    /// Whether the best name meets it down to its noise.
+    pub is_met: bool,
+    /// What a reader should know besides, one plain sentence each.
+    pub remarks: Vec<String>,
+    /// FRFs of the further test.
+    pub recorded: Vec<FrfPair>,
+}
+
+impl Weighed {
+    /// Whether one name is sure by both tests.
+    pub fn is_settled(&self) -> bool {
+        self.names.first().is_some_and(|first| first.probability >= SURE)
+    }
+}
+
+/// Weighs the names that a diagnosis has left by `further`, the FRFs of the structure as the fixture beside
+/// them describes it, together with the present ones.
 ///
 /// # Errors
 /// See [`PlanError`].
@@ -27,7 +60,7 @@ pub fn weighed_by(
     remaining: &Remaining,
     further: (&Fixture, &Observation),
     options: &PlanOptions,
-) -> Result<Vec<NameNow>, PlanError> {
+) -> Result<Weighed, PlanError> {
     let observation = &remaining.observation;
     let points = candidates::points(fixture, &options.points, observation.pairs())?;
     let here = points.iter().map(|point| FrfPair::transverse(point, point));
@@ -45,27 +78,57 @@ pub fn weighed_by(
         model_error: None,
     };
     let names = names.with_information(&test, observation)?;
-    let (state, observation) = (known(further.0), further.1);
-    let cost = |name: &Name| {
-        let hypothesis = name.hypothesis.in_fixture(&state, options.exact);
-        let information = carried(&name.information, &name.hypothesis, &hypothesis);
-        let problem = Problem { centre: hypothesis.coordinates().to_vec(), information, observation };
-        let cost =
-            problem.least(hypothesis).ok_or_else(|| PlanError::NotComparable(effect_name(&name.effect)))?;
-        Ok(name.cost + cost / names.inflation)
+    let state = known(further.0);
+    let in_state = |name: &Name| name.hypothesis.in_state(&state, options.exact);
+    let with_model_error = remaining.model_error.and_then(|error| {
+        let model = in_state(&names.names[0]);
+        ModelErrorNoise::of(&error, &model, further.1).with_model_error(&model, further.1)
+    });
+    let observation = with_model_error.as_ref().unwrap_or(further.1);
+    let fitted = |name: &Name| {
+        let start = in_state(name);
+        let information = carried(&name.information, &name.hypothesis, &start);
+        let problem = Problem { centre: start.coordinates().to_vec(), information, observation };
+        problem.least(start).ok_or_else(|| PlanError::NotComparable(effect_name(&name.effect)))
     };
-    let costs: Vec<f64> = each(&names.names, cost).into_iter().collect::<Result<_, PlanError>>()?;
-    let least = costs.iter().copied().fold(f64::INFINITY, f64::min);
-    let weight = |cost: &f64| (-0.5 * (cost - least)).exp();
-    let total = costs.iter().map(weight).sum::<f64>() + names.unlisted;
-    let mut all: Vec<NameNow> = names
-        .names
-        .iter()
-        .zip(&costs)
-        .map(|(name, cost)| NameNow { effect: name.effect.clone(), probability: weight(cost) / total })
-        .collect();
+    let fits: Vec<(At, f64)> = each(&names.names, fitted).into_iter().collect::<Result<_, PlanError>>()?;
+    Ok(weighed(&names, &fits, observation))
+}
+
+/// Names by what each leaves of the further test, at what the first knows of it.
+fn weighed(names: &Names, fits: &[(At, f64)], observation: &Observation) -> Weighed {
+    let residual = |at: &At| {
+        let degrees = observation.degrees().max(1) as f64;
+        (observation.chi2(&at.predicted) / degrees, observation.residual_correlation(&at.predicted))
+    };
+    let costs = |inflation: f64| -> Vec<f64> {
+        let of = |(name, (_, least)): (&Name, &(At, f64))| name.cost + least / inflation;
+        names.names.iter().zip(fits).map(of).collect()
+    };
+    let least = |costs: &[f64]| (0..costs.len()).min_by(|a, b| costs[*a].total_cmp(&costs[*b])).unwrap_or(0);
+    let (chi2_per_dof, correlation) = residual(&fits[least(&costs(names.inflation))].0);
+    let costs = costs(names.inflation.max(variance_inflation(chi2_per_dof, correlation)));
+    let lowest = costs[least(&costs)];
+    let weight = |cost: &f64| (-0.5 * (cost - lowest)).exp();
+    let misfit = observation.excess(chi2_per_dof).max(0.0);
+    let unlisted = (names.unlisted.ln() + 0.5 * misfit * misfit).min(MOST_UNLISTED).exp().max(names.unlisted);
+    let total = costs.iter().map(weight).sum::<f64>() + unlisted;
+    let name = |(name, cost): (&Name, &f64)| WeighedName {
+        effect: name.effect.clone(),
+        probability: weight(cost) / total,
+        before: name.probability,
+    };
+    let mut all: Vec<WeighedName> = names.names.iter().zip(&costs).map(name).collect();
     all.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    Ok(all)
+    let is_met = misfit <= MISFIT;
+    Weighed {
+        says: says::weighed(&all, chi2_per_dof, is_met),
+        remarks: says::remarks_of_two_tests(names.added),
+        names: all,
+        chi2_per_dof,
+        is_met,
+        recorded: observation.pairs().to_vec(),
+    }
 }
 
 /// A test whose coordinates are known beforehand with a full covariance.
@@ -82,11 +145,12 @@ struct At {
 }
 
 impl Problem<'_> {
-    /// χ² and what the first test says against the coordinates, at the best of them.
-    fn least(&self, start: Hypothesis) -> Option<f64> {
+    /// The best coordinates, and χ² there with what the first test says against them.
+    fn least(&self, start: Hypothesis) -> Option<(At, f64)> {
         let predicted = start.predict(self.observation).ok()?;
         let start = At { hypothesis: start, predicted };
-        Some(descend(self, start, None, &Settings::default())?.objective)
+        let end = descend(self, start, None, &Settings::default())?;
+        Some((end.point, end.objective))
     }
 
     fn departure(&self, at: &At) -> Vec<f64> {

@@ -305,7 +305,7 @@ impl Joints<'_> {
 
     fn of_change(&self, measure: Measure, present: &[FrfPair], known: &[f64]) -> Option<Candidate> {
         let fixture = measure.changed(&self.test.fixture)?;
-        let hypothesis = self.hypothesis.in_fixture(&fixture, self.test.exact);
+        let hypothesis = self.hypothesis.in_state(&fixture, self.test.exact);
         let by_frf = self.test.products(std::slice::from_ref(&hypothesis), present)?;
         let mut sum = Products::none(&by_frf.first()?.widths);
         by_frf.iter().for_each(|own| sum.add(own));

@@ -52,11 +52,10 @@ mod settings;
 mod suggestion;
 
 pub use error::PlanError;
-pub use further::weighed_by;
+pub use further::{Weighed, weighed_by};
 pub use joint::{HalfWidth, Start, Wanted};
 pub use measure::Measure;
-pub use names::NameNow;
-pub use names::Remaining;
+pub use names::{NameNow, Remaining, WeighedName};
 pub use plan::{FrfGain, Plan, PlanOptions};
 pub use settings::outcome::{BEYOND_DOUBT, SURE};
 pub use suggestion::{ExpectedInterval, Suggestion};

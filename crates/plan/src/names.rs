@@ -23,6 +23,18 @@ pub struct NameNow {
     pub probability: f64,
 }
 
+/// A name, and how probable it is without a further test and with it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WeighedName {
+    /// Kind, place and dof.
+    #[serde(flatten, serialize_with = "jointscope_findings::effect_name")]
+    pub effect: Effect,
+    /// Its probability by both tests together.
+    pub probability: f64,
+    /// Its probability by the first alone, as the diagnosis states it.
+    pub before: f64,
+}
+
 /// What a diagnosis has left open of one finding.
 #[derive(Debug, Clone)]
 pub struct Remaining {
@@ -241,21 +253,31 @@ fn with_widths(hypothesis: &Hypothesis, mut information: Vec<f64>, unknown: f64)
     information
 }
 
-/// Information on the coordinates of `from` as one on those of `to`, the same hypothesis in another fixture.
+/// Information on the coordinates of `from` as one on those of `to`, the same hypothesis of the structure in
+/// another state: what has no counterpart there, and what another state has anew, is as well known as it is
+/// stated.
 pub(crate) fn carried(information: &[f64], from: &Hypothesis, to: &Hypothesis) -> Vec<f64> {
     let (count, tolerances) = (from.parameters().len(), from.tolerances());
+    // Where it was, and how much a step here is there.
     let place = |m: usize| match to.tolerances().get(m) {
-        Some(tolerance) => tolerances.iter().position(|own| own.quantity.path == tolerance.quantity.path),
-        None => Some(m - to.tolerances().len() + tolerances.len()),
+        Some(tolerance) if tolerance.is_of_one_state() => None,
+        Some(tolerance) => {
+            let own = tolerances.iter().position(|own| own.quantity.path == tolerance.quantity.path)?;
+            let value = to.ended_at(m);
+            let [here, there] = [tolerance, &tolerances[own]].map(|t| t.parameter.transform.slope(value));
+            (there != 0.0).then_some((own, here / there))
+        }
+        None => Some((m - to.tolerances().len() + tolerances.len(), 1.0)),
     };
     let order = to.parameters().len();
-    let places: Vec<Option<usize>> = (0..order).map(place).collect();
+    let places: Vec<Option<(usize, f64)>> = (0..order).map(place).collect();
     let mut carried = vec![0.0; order * order];
     for i in 0..order {
         match places[i] {
-            Some(own) => {
+            Some((own, step)) => {
                 for (j, other) in places.iter().enumerate() {
-                    carried[i * order + j] = other.map_or(0.0, |other| information[own * count + other]);
+                    let entry = |(other, along)| step * along * information[own * count + other];
+                    carried[i * order + j] = other.map_or(0.0, entry);
                 }
             }
             None => carried[i * order + i] = to.parameters()[i].precision.max(UNKNOWN_DEVIATION.powi(-2)),

@@ -262,7 +262,7 @@ impl Judge<'_> {
     fn of_change(&self, measure: Measure, present: &[FrfPair]) -> Option<Candidate> {
         let fixture = measure.changed(&self.test.fixture)?;
         let hypotheses: Vec<Hypothesis> =
-            self.hypotheses.iter().map(|own| own.in_fixture(&fixture, self.test.exact)).collect();
+            self.hypotheses.iter().map(|own| own.in_state(&fixture, self.test.exact)).collect();
         let by_frf = self.test.products(&hypotheses, present)?;
         let mut products = Products::none(&by_frf.first()?.widths);
         by_frf.iter().for_each(|own| products.add(own));

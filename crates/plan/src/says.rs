@@ -2,7 +2,7 @@
 //! stands above it.
 
 use crate::measure::Measure;
-use crate::names::NameNow;
+use crate::names::{NameNow, WeighedName};
 use crate::settings::outcome::{BEYOND_DOUBT, SURE};
 use crate::suggestion::{ExpectedInterval, Suggestion};
 use jointscope_spectra::FrfPair;
@@ -138,6 +138,38 @@ pub(crate) fn comes_to(names: &[NameNow], suggestions: &[Suggestion], not_by_frf
             probability(best.sure.unwrap_or(0.0))
         ),
     }
+}
+
+/// What two tests say together.
+pub(crate) fn weighed(names: &[WeighedName], chi2_per_dof: f64, is_met: bool) -> String {
+    let Some(first) = names.first() else { return String::new() };
+    let left = 1.0 - names.iter().map(|name| name.probability).sum::<f64>();
+    if !is_met {
+        return format!(
+            "No name meets the further test: {} comes nearest and leaves χ² per degree of freedom of {}, so that something else differs between the tests, or was left out of both ({} for what no name covers). \
+             See whether the second fixture states the mass, its place, the supports and the damping of that state, and diagnose the second test by itself",
+            effect_name(&first.effect),
+            three(chi2_per_dof),
+            percent(left)
+        );
+    }
+    let is = effect_name(&first.effect);
+    let before = percent(first.before);
+    if first.probability >= SURE {
+        return format!(
+            "With both tests it is {is} ({}, after {before} without the further test)",
+            probability(first.probability)
+        );
+    }
+    format!(
+        "The further test does not settle it: {is} has {} then, after {before} without it",
+        percent(first.probability)
+    )
+}
+
+/// What a reader of two tests should know besides.
+pub(crate) fn remarks_of_two_tests(added: bool) -> Vec<String> {
+    added.then(added_names).into_iter().collect()
 }
 
 /// Names that the present test cannot have, and another one can.

@@ -2,9 +2,11 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use jointscope_diagnosis::{Hypothesis, Observation};
-use jointscope_fixture::{Effect, EffectKind, Fixture, Place, QuantityKey};
+use jointscope_fixture::{Effect, EffectKind, Fixture, Place, Quantity, QuantityKey};
 use jointscope_lumped::{Instrument, synthesize};
-use jointscope_plan::{Measure, Plan, PlanError, PlanOptions, Remaining, Start, weighed_by};
+use jointscope_plan::{
+    Measure, Plan, PlanError, PlanOptions, Remaining, Start, Weighed, WeighedName, weighed_by,
+};
 use jointscope_samples::transverse;
 use jointscope_spectra::SpectralLines;
 use num_complex::Complex64;
@@ -160,14 +162,52 @@ fn a_further_test_with_a_known_mass_says_of_the_names_what_its_frfs_can_tell() {
     let probability_of_the_sensor = |frf: (&str, &str)| {
         let observation = recorded(&with(vec![sensor.clone()]), &[frf]);
         let options = PlanOptions::default();
-        let names = weighed_by(&fixture, &remaining, (&with(Vec::new()), &observation), &options).unwrap();
-        let of_the_sensor = |name: &&jointscope_plan::NameNow| name.effect.place == sensor.place;
-        names.iter().find(of_the_sensor).unwrap().probability
+        let weighed = weighed_by(&fixture, &remaining, (&with(Vec::new()), &observation), &options).unwrap();
+        let of_the_sensor = |name: &&WeighedName| name.effect.place == sensor.place;
+        assert!(weighed.is_met, "{}", weighed.says);
+        weighed.names.iter().find(of_the_sensor).unwrap().probability
     };
     // The same FRF has both channels in it, mass or no mass, and the force beside them; the driving point has
     // no sensor 2.
     assert!((probability_of_the_sensor(("2", "1")) - 0.32).abs() < 0.01);
     assert!(probability_of_the_sensor(("1", "1")) > 0.9);
+}
+
+/// The two names and a further FRF 1/1 that `truth` makes of the chain's state as the fixture has it.
+fn weighed_by_a_driving_point(ratio: Quantity, truth: impl Fn(&Fixture) -> Fixture) -> Weighed {
+    let (sensor, hammer) =
+        (gain(Place::Response("2".into()), 1.03), gain(Place::Reference("1".into()), 1.0 / 1.03));
+    let mut fixture = chain();
+    let ratios = |fixture: &mut Fixture, ratio: Quantity| {
+        let mut quantities = fixture.quantities_mut();
+        *quantities.iter_mut().find(|q| q.key == QuantityKey::ModalRatio(0)).unwrap().quantity = ratio;
+    };
+    ratios(&mut fixture, ratio);
+    let remaining = remaining(&fixture, [sensor.clone(), hammer], &[("2", "1")]);
+    let mut other = truth(&fixture);
+    ratios(&mut other, Quantity::bare(0.022));
+    let physics = [other.physics(), &[sensor]].concat();
+    let observation = recorded(&other.with_physics(physics).unwrap(), &[("1", "1")]);
+    weighed_by(&fixture, &remaining, (&fixture, &observation), &PlanOptions::default()).unwrap()
+}
+
+#[test]
+fn a_further_test_has_damping_ratios_of_its_own_and_what_no_name_meets_is_told() {
+    let free = weighed_by_a_driving_point(Quantity::with_std(0.02, 0.004), Fixture::clone);
+    assert!(free.is_met && free.chi2_per_dof < 0.01, "{}", free.says);
+    assert!(free.is_settled() && free.names[0].effect.place == Place::Response("2".into()), "{}", free.says);
+    assert!(free.says.starts_with("With both tests it is"), "{}", free.says);
+    // Stated to a thousandth of what differs, and a mass that the second fixture forgot.
+    let exact = weighed_by_a_driving_point(Quantity::with_std(0.02, 2e-6), Fixture::clone);
+    let forgotten = weighed_by_a_driving_point(Quantity::with_std(0.02, 0.004), |fixture| {
+        let mass = Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.1, 0.2]);
+        fixture.clone().with_physics(vec![mass]).unwrap()
+    });
+    for weighed in [exact, forgotten] {
+        assert!(!weighed.is_met && !weighed.is_settled(), "{}", weighed.says);
+        assert!(weighed.says.starts_with("No name meets the further test"), "{}", weighed.says);
+        assert!(weighed.names.iter().all(|name| name.probability < 0.05), "{:?}", weighed.names);
+    }
 }
 
 #[test]

@@ -317,8 +317,8 @@ impl PlanningCase {
                 let observation = Observation::new(&more, |_| true)?;
                 let options = PlanOptions::default();
                 let weighed = weighed_by(fixture, remaining, (&state, &observation), &options);
-                let weighed = weighed.unwrap_or_default();
-                weighed.into_iter().map(|name| (Name::of(&name.effect), name.probability)).collect()
+                let names = weighed.map(|weighed| weighed.names).unwrap_or_default();
+                names.into_iter().map(|name| (Name::of(&name.effect), name.probability)).collect()
             }
             _ => {
                 let more = self.measured(&self.truth, &measure.frfs(), 1)?;

@@ -64,6 +64,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 mod tone;
+mod weighed_page;
 
 pub use jointscope_wording::format;
 use jointscope_wording::unit;
@@ -81,3 +82,4 @@ pub use plan_page::plan_page;
 pub use proof_page::{ProofContext, ProofResults, proof_page};
 pub use report::{Report, ReportFile};
 pub use summary_page::summary_page;
+pub use weighed_page::weighed_page;

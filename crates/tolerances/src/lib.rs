@@ -41,6 +41,17 @@ impl Tolerance {
         self.parameter.transform.value(coordinate).unwrap_or(self.quantity.value)
     }
 
+    /// Deviations from the stated value at which it is `value`; none where no coordinate reaches it.
+    pub fn coordinate(&self, value: f64) -> f64 {
+        self.parameter.transform.coordinate(value).unwrap_or(0.0)
+    }
+
+    /// Whether another state of the structure (with a mass on it, off its supports) has another one: modal
+    /// damping ratios are those of the assembly as it was tested.
+    pub fn is_of_one_state(&self) -> bool {
+        matches!(self.quantity.key, QuantityKey::ModalRatio(_))
+    }
+
     /// Whether it is known to no better than the share `wide`; damping and where something is attached apart.
     pub fn is_wide(&self, wide: f64) -> bool {
         let NamedQuantity { key, nature, value, std, .. } = self.quantity;

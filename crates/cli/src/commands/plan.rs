@@ -6,9 +6,10 @@ use clap::Args;
 use jointscope::diagnosis::Observation;
 use jointscope::estimation::ResponseWindow;
 use jointscope::pipeline::MeasuredFrfs;
-use jointscope::plan::{NameNow, Plan, PlanOptions, Remaining, Start, Suggestion, Wanted, weighed_by};
-use jointscope::report::{PageContext, plan_page};
-use jointscope::{Answer, Band, Fixture, Outcome, SpectralLines, effect_name, plan_file};
+use jointscope::plan::{Plan, PlanOptions, Remaining, Start, Suggestion, Wanted, WeighedName, weighed_by};
+use jointscope::report::{PageContext, plan_page, weighed_page};
+use jointscope::{Answer, Band, Fixture, Outcome, SpectralLines, effect_name, plan_file, weighed_file};
+use serde_json::Value;
 
 use crate::answered::Destination;
 use crate::commands::diagnose::{self, DiagnoseArguments};
@@ -104,7 +105,10 @@ pub(super) fn run(arguments: &PlanArguments, read: ReadDiagnose) -> Result<Strin
             }
         }
     };
-    written(arguments, &planned)
+    let Planned { plan, fixture, files, notes } = planned;
+    let context = origin::context(&files, notes, None)?;
+    let page = plan_page(&plan, &fixture, &context).map_err(Refusal::new)?;
+    written(arguments, &files, plan_file(&plan), page, &context, summary(&plan))
 }
 
 /// A diagnosis, and the arguments with which it was made.
@@ -268,22 +272,24 @@ fn weighed(
         .map_err(|error| recording.unanswered(&error, &state))?;
     let observation = Observation::new(&measured.frfs, |_| true).map_err(|error| recording.refusal(error))?;
     let options = diagnosed.options(&arguments.points);
-    let names = weighed_by(&diagnosed.answer.fixture, &remaining, (&state, &observation), &options)
+    let weighed = weighed_by(&diagnosed.answer.fixture, &remaining, (&state, &observation), &options)
         .map_err(|error| state.refusal(error))?;
-    let of = |(name, before): (&NameNow, f64)| {
+    let files = [diagnosed.files(), arguments.second_test.clone()].concat();
+    let notes = [diagnosed.answer.notes.clone(), measured.notes].concat();
+    let context = origin::context(&files, notes, None)?;
+    let page = weighed_page(&weighed, &state, &context).map_err(Refusal::new)?;
+    let name = |name: &WeighedName| {
         format!(
-            "{}: {:.1} %, after {:.1} % without the further test",
+            "  {}: {:.1} %, after {:.1} % without the further test",
             effect_name(&name.effect),
             100.0 * name.probability,
-            100.0 * before
+            100.0 * name.before
         )
     };
-    let before = |name: &NameNow| {
-        let same =
-            remaining.names.iter().find(|(effect, _)| effect_name(effect) == effect_name(&name.effect));
-        same.map_or(0.0, |(_, probability)| *probability)
-    };
-    Ok(names.iter().map(|name| of((name, before(name)))).collect::<Vec<_>>().join("\n"))
+    let lines = std::iter::once(format!("{}.", weighed.says))
+        .chain(weighed.names.iter().map(name))
+        .chain(weighed.remarks.iter().map(|remark| format!("{remark}.")));
+    written(arguments, &files, weighed_file(&weighed), page, &context, lines.collect())
 }
 
 /// What the command writes.
@@ -299,20 +305,22 @@ fn outputs(arguments: &PlanArguments, files: &[PathBuf], contents: [String; 2]) 
     outputs
 }
 
-/// Writes the files of a plan.
-fn written(arguments: &PlanArguments, planned: &Planned) -> Result<String, Refusal> {
-    let Planned { plan, fixture, files, notes } = planned;
-    let context: PageContext = origin::context(files, notes.clone(), None)?;
-    let mut file = plan_file(plan);
-    origin::add(&mut file, &context);
+/// Writes plan.json with what it was made of, and the page; answers with these lines, or with the file.
+fn written(
+    arguments: &PlanArguments,
+    files: &[PathBuf],
+    mut file: Value,
+    page: String,
+    context: &PageContext,
+    mut lines: Vec<String>,
+) -> Result<String, Refusal> {
+    origin::add(&mut file, context);
     let file = pretty(&file);
-    let page = plan_page(plan, fixture, &context).map_err(Refusal::new)?;
     outputs(arguments, files, [file.clone(), page]).write()?;
     context.notes.iter().for_each(|note| progress::notice(note));
     if arguments.json {
         return Ok(file.trim_end().to_owned());
     }
-    let mut lines = summary(plan);
     lines.extend(arguments.output.iter().map(|folder| folder.join(FILES[1]).display().to_string()));
     Ok(lines.join("\n"))
 }

@@ -51,6 +51,23 @@ fn the_first_suggestion_of_the_guide_settles_the_name_as_the_guide_says() {
 }
 
 #[test]
+fn two_tests_together_write_the_names_they_leave_and_a_page() {
+    let bench = look_alikes("plan-two-tests");
+    let tests =
+        ["plan", "fixture.json", "first-test.uff", "--second-test", "fixture.json", "second-test.uff"];
+    let said = bench.done(&[&tests[..], &["-o", "both"]].concat());
+    let file = bench.json("both/plan.json");
+    assert!(said.starts_with(file["says"].as_str().unwrap()), "{said}");
+    let names = file["names"].as_array().unwrap();
+    assert!(names.len() > 1 && names[0]["probability"].as_f64().unwrap() >= 0.9, "{file}");
+    assert!(names[0]["before"].as_f64().unwrap() < 0.9 && names[0]["place"] == "3", "{file}");
+    assert!(file["made"]["inputs"].as_array().unwrap().len() >= 3, "{file}");
+    let html = bench.text("both/plan.html");
+    assert!(html.contains("Plan: two tests together"), "no title");
+    assert!(html.contains("First alone") && html.contains("<svg"), "no table or view");
+}
+
+#[test]
 fn what_cannot_be_planned_is_refused_in_a_sentence() {
     let bench = look_alikes("plan-refused");
     bench.refused(&["plan", "fixture.json"], &["nothing was recorded", "--interval"]);
