@@ -84,6 +84,10 @@ pub(crate) mod homogeneity {
     pub(crate) const WEAK_FORCE: f64 = 0.03;
     /// Degrees of freedom within levels from which they tell the noise.
     pub(crate) const FEWEST_WITHIN: f64 = 8.0;
+    /// Independent lines of a block.
+    pub(crate) const INDEPENDENT_IN_BLOCK: f64 = 4.0;
+    /// Blocks on each side over which the scatter of hits alike is taken.
+    pub(crate) const BLOCKS_AROUND: usize = 3;
     /// How far the noise at a record's end may be from that of all of it.
     pub(crate) const NOISE_DOUBT: f64 = 1.25;
 }

@@ -7,7 +7,9 @@
 
 use super::records::{Record, struck_channels};
 use crate::distribution::{chi_squared_tail, f_tail};
-use crate::settings::homogeneity::{FEWEST_WITHIN, NOISE_DOUBT, SAMPLING_ERROR, WEAK_FORCE, WINDOW};
+use crate::settings::homogeneity::{
+    BLOCKS_AROUND, FEWEST_WITHIN, INDEPENDENT_IN_BLOCK, NOISE_DOUBT, SAMPLING_ERROR, WEAK_FORCE, WINDOW,
+};
 use crate::spectra::Windowed;
 use num_complex::Complex64;
 use serde::Serialize;
@@ -54,6 +56,12 @@ struct Sums {
 }
 
 impl Sums {
+    fn of(all: &[Sums]) -> Self {
+        let mut sum = Sums::default();
+        all.iter().for_each(|own| sum.add(own));
+        sum
+    }
+
     fn add(&mut self, other: &Sums) {
         self.between += other.between;
         self.within += other.within;
@@ -78,8 +86,30 @@ impl Sums {
     }
 }
 
+/// What hits tell of every band, and of how many of their lines are independent.
+#[derive(Debug, Clone, Copy, Default)]
+struct Told {
+    bands: [Sums; BANDS],
+    /// How far scatter differs from block to block of lines, against what independent lines make, summed.
+    spread: f64,
+    blocks: f64,
+}
+
+impl Told {
+    fn add(&mut self, other: &Told) {
+        self.bands.iter_mut().zip(&other.bands).for_each(|(own, other)| own.add(other));
+        self.spread += other.spread;
+        self.blocks += other.blocks;
+    }
+
+    /// Share of the lines that are independent, as the scatter shows it; one where it shows nothing.
+    fn independent(&self) -> f64 {
+        if self.blocks == 0.0 { 1.0 } else { (self.blocks / self.spread).min(1.0) }
+    }
+}
+
 pub(crate) fn homogeneity(records: &[Record], highest_hz: f64) -> Homogeneity {
-    let mut bands = [Sums::default(); BANDS];
+    let mut told = Told::default();
     let mut share: f64 = 1.0;
     for channel in struck_channels(records) {
         let group: Vec<&Record> = records.iter().filter(|r| *r.struck() == channel).collect();
@@ -93,11 +123,11 @@ pub(crate) fn homogeneity(records: &[Record], highest_hz: f64) -> Homogeneity {
             let column = |r: &Record| r.readings.iter().position(|other| other == reading);
             let alike = group.iter().copied().filter(alike);
             let signals: Vec<Signal> = alike.filter_map(|r| Some(comparison.signal(r, column(r)?))).collect();
-            comparison.add(&signals, &mut bands);
+            told.add(&comparison.told(&signals));
         }
     }
-    let mut all = Sums::default();
-    bands.iter().for_each(|band| all.add(band));
+    let share = share.min(told.independent());
+    let (bands, all) = (told.bands, Sums::of(&told.bands));
     let (ratio, p_value) = all.judged(share);
     let by_band = bands.iter().map(|sums| sums.judged(share).1).enumerate();
     let (most, least_p) = by_band.fold(
@@ -167,17 +197,39 @@ impl Comparison {
         Signal { record, force, response, variance, weakest: WEAK_FORCE * strongest }
     }
 
-    fn add(&self, signals: &[Signal], bands: &mut [Sums; BANDS]) {
-        let Some(count) = signals.iter().map(|s| s.force.len()).min() else { return };
+    /// What these hits tell of every band. Nothing says that the noise is what the end of a record shows: under
+    /// an exponential window it dies away with the signal, and a preamplifier's is not white. So lines count
+    /// by the scatter of hits alike on the lines around them, where that is more than their noise.
+    fn told(&self, signals: &[Signal]) -> Told {
+        let mut told = Told::default();
+        let count = signals.iter().map(|s| s.force.len()).min().unwrap_or(0);
         let within = |line: &usize| self.windowed.frequency_hz(*line) <= self.highest_hz;
-        for line in (2..count).take_while(within) {
+        let of_line = |line: usize| {
             let used: Vec<&Signal> = signals.iter().filter(|s| s.force[line].norm() > s.weakest).collect();
-            let part = self.windowed.frequency_hz(line) / self.highest_hz;
-            let band = ((part * BANDS as f64) as usize).min(BANDS - 1);
-            if let Some(sums) = self.line(&used, line) {
-                bands[band].add(&sums);
+            self.line(&used, line).unwrap_or_default()
+        };
+        let lines: Vec<Sums> = (2..count).take_while(within).map(of_line).collect();
+        let length = (INDEPENDENT_IN_BLOCK / self.independent()).ceil() as usize;
+        let blocks: Vec<Sums> = lines.chunks(length).map(Sums::of).collect();
+        for (index, block) in blocks.iter().enumerate() {
+            let around = index.saturating_sub(BLOCKS_AROUND)..(index + BLOCKS_AROUND + 1).min(blocks.len());
+            let around = Sums::of(&blocks[around]);
+            let enough = self.independent() * around.within_degrees >= FEWEST_WITHIN;
+            let scatter = if enough { around.within / around.within_degrees } else { 1.0 };
+            let times = scatter.max(1.0);
+            if enough && block.within_degrees > 0.0 {
+                let own = block.within / block.within_degrees / scatter;
+                told.spread += (own - 1.0).powi(2) * block.within_degrees / 2.0;
+                told.blocks += 1.0;
+            }
+            for (line, sums) in lines.iter().enumerate().skip(index * length).take(length) {
+                let part = self.windowed.frequency_hz(line + 2) / self.highest_hz;
+                let band = ((part * BANDS as f64) as usize).min(BANDS - 1);
+                let scaled = Sums { between: sums.between / times, within: sums.within / times, ..*sums };
+                told.bands[band].add(&scaled);
             }
         }
+        told
     }
 
     /// One line: χ² of one H for all hits beyond that of one H a level, and the latter.
