@@ -200,17 +200,36 @@ pub(crate) fn has_a_name(fixture: &Fixture, quantity: &NamedQuantity, departure:
 }
 
 /// The candidates and, of the quantities that a refit took beyond what chance makes, the `count` farthest:
-/// each may be wrong as it is stated.
+/// each may be wrong as it is stated. No effect says the same of them.
 pub(crate) fn with_wrong_quantities(
     candidates: &[Candidate],
     refitted: &Hypothesis,
     count: usize,
 ) -> Vec<Candidate> {
-    let tolerances = refitted.tolerances();
-    let is_unnamed = |index: usize| {
-        !has_a_name(refitted.fixture(), &tolerances[index].quantity, refitted.departure(index))
+    let is_named = |index: usize| {
+        has_a_name(refitted.fixture(), &refitted.tolerances()[index].quantity, refitted.departure(index))
     };
-    let all = (0..tolerances.len()).filter(|&index| departed(refitted, index) && is_unnamed(index));
+    with_departed(candidates, refitted, count, |index| !is_named(index))
+}
+
+/// The same with those that an effect says the same of, but for damping: a modal ratio is one of the structure
+/// with that quantity as it is, and one of the structure without that effect.
+pub(crate) fn with_all_wrong_quantities(
+    candidates: &[Candidate],
+    refitted: &Hypothesis,
+    count: usize,
+) -> Vec<Candidate> {
+    with_departed(candidates, refitted, count, |_| true)
+}
+
+fn with_departed(
+    candidates: &[Candidate],
+    refitted: &Hypothesis,
+    count: usize,
+    is_one: impl Fn(usize) -> bool,
+) -> Vec<Candidate> {
+    let tolerances = refitted.tolerances();
+    let all = (0..tolerances.len()).filter(|&index| departed(refitted, index) && is_one(index));
     let mut farthest: Vec<usize> = all.collect();
     let distance = |index: usize| refitted.departure(index).abs();
     farthest.sort_by(|a, b| distance(*b).total_cmp(&distance(*a)));

@@ -1,6 +1,7 @@
 //! The ways to a diagnosis: by the noise of the lines, by the error of the model, by what has changed since a
 //! baseline; and which of them a recording asks for.
 
+use crate::departures::has_departed;
 use crate::evidence::{self, explains, nothing_can_be_stated, upper_tail};
 use crate::finding::{Finding, Tried};
 use crate::fit::Fit;
@@ -85,6 +86,17 @@ pub(crate) fn judged(
         return Ok(from_found(without_effects, found));
     }
     let parts = routed(fitter, &without_effects, given, modal.as_ref(), division.as_ref());
+    // Where no name brings the lines down to their noise, one quantity that is wrong may.
+    let short = parts.verdict != Verdict::Consistent && !explains(fitter, &parts.search.repaired, false);
+    let bent = parts.verdict == Verdict::Unexplained && has_departed(&parts.search.repaired.hypothesis);
+    let found = if short || bent { without_effects.explained_by_wrong_quantity(fitter) } else { None };
+    if let Some(found) = found {
+        let with = Search { candidates: found.candidates.clone(), ..without_effects.clone() };
+        let wrong = from_found(with, found);
+        if wrong.verdict == Verdict::Explained {
+            return Ok(wrong);
+        }
+    }
     Ok(match parts.verdict {
         Verdict::Unexplained => {
             as_located(fitter, without_effects, given, modal.as_ref(), division.as_ref(), parts)

@@ -2,7 +2,8 @@
 //! tolerances.
 
 use crate::candidate::Candidate;
-use crate::catalogue::{catalogue, with_wrong_quantities};
+use crate::catalogue::{catalogue, with_all_wrong_quantities, with_wrong_quantities};
+use crate::departures::has_departed;
 use crate::evidence::{cost, deviates_by_chance, explains, nothing_can_be_stated};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
@@ -83,26 +84,39 @@ impl Search {
         Search { candidates, ..self }
     }
 
+    /// The fixture with one quantity wrong as it is stated, where that explains the lines down to their noise
+    /// and no effect that says the same of it does.
+    pub(crate) fn explained_by_wrong_quantity(&self, fitter: &Fitter) -> Option<Search> {
+        let known = self.candidates.len();
+        let count = fitter.settings.selection.wrong;
+        let candidates = with_all_wrong_quantities(&self.candidates, &self.refitted.hypothesis, count);
+        let with = Search { candidates, ..self.clone() };
+        let found = with.candidates[known..].iter().filter_map(|name| with.explained_by(fitter, name, false));
+        found.min_by(|a, b| a.repaired.objective.total_cmp(&b.repaired.objective))
+    }
+
     /// The fixture with the gain of the one record that stands alone, where that explains the lines down to
     /// their noise: all that an odd record spoils is spared then.
     pub(crate) fn explained_by_odd_record(&self, fitter: &Fitter) -> Option<Search> {
-        self.explained_by(fitter, &odd_record(fitter.observation, &self.nominal)?)
+        self.explained_by(fitter, &odd_record(fitter.observation, &self.nominal)?, true)
     }
 
     /// The fixture with one sensor's mass that goes from response to response, where that explains the lines
     /// down to their noise: the poles that all FRFs share are of no structure then, and modes tell nothing.
     pub(crate) fn explained_by_moved_sensor(&self, fitter: &Fitter) -> Option<Search> {
         let is_moved = |c: &&Candidate| c.kind == EffectKind::SensorMass && c.place == Place::Responses;
-        self.explained_by(fitter, self.candidates.iter().find(is_moved)?)
+        self.explained_by(fitter, self.candidates.iter().find(is_moved)?, true)
     }
 
     /// The fixture with this name alone, from each of its starts, where that explains the lines down to their
-    /// noise.
-    fn explained_by(&self, fitter: &Fitter, name: &Candidate) -> Option<Search> {
+    /// noise, `strictly` not a tenth of the noise more, and gains what it must.
+    fn explained_by(&self, fitter: &Fitter, name: &Candidate, strictly: bool) -> Option<Search> {
         let fit = |start: usize| fitter.refitted(&self.nominal.hypothesis.with(name.effect(start)));
         let fits = (0..name.starts.len()).filter_map(fit);
         let repaired = fits.min_by(|a, b| a.objective.total_cmp(&b.objective))?;
-        explains(fitter, &repaired, true).then(|| Search { repaired, ..self.clone() })
+        let explained =
+            explains(fitter, &repaired, strictly) && self.is_worth(fitter, &repaired, &self.refitted);
+        explained.then(|| Search { repaired, ..self.clone() })
     }
 
     /// What explains the lines down to their noise among few names, for a share of all work; `None` where
@@ -275,6 +289,7 @@ impl Search {
         // Quantities that had to deviate are a misfit too, which a χ² that is small by chance must not hide.
         fit.objective > degrees * (1.0 + fits * (2.0 / degrees).sqrt().hypot(noise))
             || !deviates_by_chance(fitter, &fit.hypothesis)
+            || has_departed(&fit.hypothesis)
     }
 
     /// Fits of `base` with one more effect, best first by objective and penalty of parameters, with the

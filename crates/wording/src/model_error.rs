@@ -53,6 +53,12 @@ pub(crate) fn verdict(diagnosis: &Diagnosis, [refitted, repaired]: &[ModelError;
             varies(diagnosis, &diagnosis.search.repaired),
             it = it(diagnosis)
         ),
+        Verdict::Unexplained if refitted.is_none() && remaining(diagnosis).next().is_some() => format!(
+            "Something is left out that none of the effects known here accounts for: so changed the model is off by {without}, and no effect \
+             does that in its stead; without the change it shows {}{}.",
+            shows(diagnosis, &diagnosis.search.nominal),
+            varies(diagnosis, &diagnosis.search.nominal)
+        ),
         Verdict::Unexplained => format!(
             "Something is left out that none of the effects known here accounts for: the model is off by {}, and no effect makes that much \
              smaller. That is {}; it shows {}{}.",
@@ -386,6 +392,17 @@ mod tests {
             &judged(Verdict::Unexplained, usual, usual),
             &["in gains of records, mass lines, upper residuals or phases"],
             &[],
+        );
+    }
+
+    #[test]
+    fn a_departure_that_leaves_no_error_is_what_is_left_out_and_no_error_is_said_to_stay() {
+        let mut diagnosis = judged(Verdict::Unexplained, ModelError::default(), ModelError::default());
+        diagnosis.departures = vec![departure("joints/J/stiffness/0/0", -11.0)];
+        says(
+            &diagnosis,
+            &["so changed the model is off by no more than the noise, and no effect does that in its stead"],
+            &["makes that much smaller", "not larger than usual"],
         );
     }
 

@@ -100,6 +100,38 @@ fn a_storey_too_heavy_is_a_wrong_mass_or_an_added_one() {
     assert_eq!(diagnosis.departures[0].path, "bodies/F1/mass");
 }
 
+/// A modal test reads the ratios of the frame with its column as it is, which no change of stiffness beside
+/// the damping of the stated frame has.
+#[test]
+fn a_column_that_is_softer_than_stated_is_named_where_ratios_are_those_read_with_it() {
+    let frame = |factor: f64, std: f64| {
+        let storey = |mass: f64| json!({ "mass": {"value": mass, "std": 0.002 * mass}, "rotates": false });
+        let columns =
+            |factor: f64, std: f64| json!([[{"value": factor * 6.0e4, "std": std}, 0.0], [0.0, 0.0]]);
+        Fixture::from_value(&json!({
+            "bodies": { "F1": storey(3.1), "F2": storey(3.9), "F3": storey(3.0) },
+            "points": { "1": { "body": "F1", "x": 0.3 }, "2": { "body": "F2", "x": 0.6 }, "3": { "body": "F3", "x": 0.9 } },
+            "joints": { "J12": { "from": "1", "to": "2", "stiffness": columns(1.0, 3.0e3) }, "J23": { "from": "2", "to": "3", "stiffness": columns(factor, std) } },
+            "supports": { "S": { "point": "1", "stiffness": {"value": 6.0e4, "std": 3.0e3} } },
+            "damping": { "modal_ratios": [{"value": 0.010, "std": 0.0025}, {"value": 0.012, "std": 0.003}, {"value": 0.015, "std": 0.00375}] },
+        }))
+        .unwrap()
+    };
+    let pairs = transverse(&[("1", "1"), ("2", "1"), ("3", "1"), ("3", "3")]);
+    let lines = SpectralLines::even(2.0, 0.125, 400).unwrap();
+    for (factor, seed) in [(0.56, 1), (0.73, 2)] {
+        let frfs = measured(&frame(factor, 1.0), Vec::new(), (&pairs, &lines), &hammer(seed));
+        let diagnosis = Diagnosis::of(&frame(1.0, 3.0e3), &frfs, &DiagnosisOptions::default()).unwrap();
+        let said = told(&diagnosis);
+        assert_eq!((diagnosis.verdict, diagnosis.findings.len()), (Verdict::Explained, 1), "{said}");
+        let found = &diagnosis.findings[0];
+        assert_eq!(found.effect.kind, EffectKind::QuantityError, "{said}");
+        assert_eq!(found.effect.place.to_string(), "joints/J23/stiffness/0/0");
+        assert!((found.estimates[0].value / (factor * 6.0e4) - 1.0).abs() < 0.01, "{said}");
+        assert!(found.probability > 0.9, "{said}");
+    }
+}
+
 #[test]
 fn a_quantity_within_its_tolerances_is_no_departure() {
     let (fixture, frfs) = wrong(&[("/bodies/A/x_cg", -0.0302)], 5);
