@@ -7,6 +7,7 @@ use crate::baseline::Drift;
 use crate::decay::left_at_end;
 use crate::pulse::Pulse;
 use crate::settings::baseline::FEWEST_BEFORE;
+use crate::settings::overload::SAME_VALUE;
 use crate::settings::pulse::FILTER_RINGING;
 use crate::settings::windows::{FORCE_WINDOW_WIDTHS, TAPER_PARTS};
 use crate::{Baseline, Fault, ForceWindow, baseline, fault};
@@ -21,6 +22,23 @@ pub(crate) struct Conditioned<'a> {
     pub responses: Vec<Signal<'a>>,
     /// How the force's baseline drifts.
     pub force_drift: Drift,
+}
+
+/// Marks the hits whose force reaches the very value at which another hit's is cut off: one sample at the top
+/// of a short blow tells nothing by itself.
+pub(crate) fn mark_cut_off_alike(hits: &mut [Conditioned]) {
+    let cut_off = |fault: &Fault| match fault {
+        Fault::Overload { signal: fault::Signal::Force, at } => Some(*at),
+        _ => None,
+    };
+    let values: Vec<f64> = hits.iter().flat_map(|hit| hit.faults.iter().filter_map(cut_off)).collect();
+    for hit in hits.iter_mut().filter(|hit| !hit.faults.iter().any(|fault| cut_off(fault).is_some())) {
+        let reaches = |at: &&f64| hit.hit.force().iter().any(|f| (f - **at).abs() <= SAME_VALUE * at.abs());
+        let within = |at: &&f64| hit.hit.peak_force() <= (1.0 + SAME_VALUE) * at.abs();
+        if let Some(at) = values.iter().find(|at| reaches(at) && within(at)) {
+            hit.faults.push(Fault::Overload { signal: fault::Signal::Force, at: *at });
+        }
+    }
 }
 
 /// The same hit with the baselines of its signals off, as the estimate takes them: for whatever else is made

@@ -7,7 +7,7 @@ use num_complex::Complex64;
 
 use crate::average::{Averaged, Pair, averaged, variance_of_unequal_hits, weights_by_noise};
 use crate::band::last_usable;
-use crate::conditioned::{Conditioned, Spectra, Transform};
+use crate::conditioned::{Conditioned, Spectra, Transform, mark_cut_off_alike};
 use crate::remarks::Remarks;
 use crate::settings::hits::{FEWEST_SAMPLES, SAME_INTERVAL};
 use crate::settings::windows::{LEFT_BY_WINDOW, LOWEST_SPACINGS, MOST_LEFT_OUT};
@@ -40,7 +40,9 @@ impl Estimate {
     /// See [`EstimateError`].
     pub fn of(hits: &[Hit], options: &EstimateOptions) -> Result<Self, EstimateError> {
         check(hits, options)?;
-        let all: Vec<Conditioned> = hits.iter().map(|hit| Conditioned::of(hit, options.baseline)).collect();
+        let mut all: Vec<Conditioned> =
+            hits.iter().map(|hit| Conditioned::of(hit, options.baseline)).collect();
+        mark_cut_off_alike(&mut all);
         let reports: Vec<HitReport> = all.iter().map(|hit| report(hit, options)).collect();
         let used: Vec<&Conditioned> =
             all.iter().zip(&reports).filter(|(_, report)| report.used).map(|(hit, _)| hit).collect();

@@ -50,6 +50,12 @@ pub(crate) mod ringing_left {
 pub(crate) mod overload {
     /// Samples at one extreme value that a signal of its own does not hold.
     pub(crate) const HELD_SAMPLES: usize = 3;
+    /// The same where the samples beside them lie `CLIFF_STEPS` steps of the converter below.
+    pub(crate) const HELD_BETWEEN_CLIFFS: usize = 2;
+    /// Steps below a top of which chance makes two samples equal in one blow of a thousand.
+    pub(crate) const CLIFF_STEPS: f64 = 1000.0;
+    /// Relative difference within which samples of two hits are the same value.
+    pub(crate) const SAME_VALUE: f64 = 1e-9;
     /// Steps of the converter by which the samples beside a cut-off top lie below it.
     pub(crate) const FLANK_STEPS: f64 = 4.0;
     /// Smallest share of the range that such a step is taken to be, for signals that were scaled since.

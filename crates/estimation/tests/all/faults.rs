@@ -56,6 +56,28 @@ fn an_overload_names_the_channel() {
 }
 
 #[test]
+fn a_short_blow_beyond_the_range_of_the_force_is_found_and_all_others_that_reach_it() {
+    // Two samples at the top of the third hit, one at that of the fourth.
+    let cut = |begins: usize, third: f64| {
+        let mut force = vec![0.0; 4096];
+        force[begins..begins + 4].copy_from_slice(&[31.0, 70.0, third, 12.0]);
+        force
+    };
+    let mut hits = Test::quiet(2, 4096).hits();
+    for (number, third) in [(3, 70.0), (4, 55.0)] {
+        let force = cut(80, third);
+        let response = TWO_MODES.answer(&force);
+        hits.push(hit(number, force, response));
+    }
+    let estimate = of(&hits).unwrap();
+    let found: Vec<&[Fault]> = estimate.hits.iter().map(|hit| hit.faults.as_slice()).collect();
+    let [[], [], third, fourth] = found[..] else { panic!("{found:?}") };
+    for faults in [third, fourth] {
+        assert!(matches!(faults, [Fault::Overload { signal: Signal::Force, at: 70.0 }]), "{faults:?}");
+    }
+}
+
+#[test]
 fn a_record_that_starts_after_the_impact_and_one_without_impact_are_rejected() {
     let late: Vec<f64> = pulse(4096, 80, 4, 90.0)[81..].iter().copied().chain([0.0; 81]).collect();
     let estimate = of(&beside_two(late)).unwrap();
