@@ -89,11 +89,12 @@ pub(crate) fn judged(
     // Where no name brings the lines down to their noise, one quantity that is wrong may.
     let short = parts.verdict != Verdict::Consistent && !explains(fitter, &parts.search.repaired, false);
     let bent = parts.verdict == Verdict::Unexplained && has_departed(&parts.search.repaired.hypothesis);
-    let found = if short || bent { without_effects.explained_by_wrong_quantity(fitter) } else { None };
+    let wrong_quantity = || without_effects.explained_by_wrong_quantity(fitter, !bent);
+    let found = if short || bent { wrong_quantity() } else { None };
     if let Some(found) = found {
         let with = Search { candidates: found.candidates.clone(), ..without_effects.clone() };
         let wrong = from_found(with, found);
-        if wrong.verdict == Verdict::Explained {
+        if wrong.verdict == Verdict::Explained && wrong.findings.len() == 1 {
             return Ok(wrong);
         }
     }

@@ -85,13 +85,14 @@ impl Search {
     }
 
     /// The fixture with one quantity wrong as it is stated, where that explains the lines down to their noise
-    /// and no effect that says the same of it does.
-    pub(crate) fn explained_by_wrong_quantity(&self, fitter: &Fitter) -> Option<Search> {
+    /// and no effect that says the same of it does; `strictly` not a tenth of the noise more.
+    pub(crate) fn explained_by_wrong_quantity(&self, fitter: &Fitter, strictly: bool) -> Option<Search> {
         let known = self.candidates.len();
         let count = fitter.settings.selection.wrong;
         let candidates = with_all_wrong_quantities(&self.candidates, &self.refitted.hypothesis, count);
         let with = Search { candidates, ..self.clone() };
-        let found = with.candidates[known..].iter().filter_map(|name| with.explained_by(fitter, name, false));
+        let found =
+            with.candidates[known..].iter().filter_map(|name| with.explained_by(fitter, name, strictly));
         found.min_by(|a, b| a.repaired.objective.total_cmp(&b.repaired.objective))
     }
 
