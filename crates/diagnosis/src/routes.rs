@@ -86,11 +86,17 @@ pub(crate) fn judged(
         return Ok(from_found(without_effects, found));
     }
     let parts = routed(fitter, &without_effects, given, modal.as_ref(), division.as_ref());
-    // Where no name brings the lines down to their noise, one quantity that is wrong may.
+    // Where no name brings the lines down to their noise, and the refit does by departing from what is stated,
+    // one quantity that is wrong may.
+    let left = without_effects.refitted.chi2_per_dof(fitter.observation);
+    let bends = left < evidence::explained(fitter.observation, fitter.settings)
+        && has_departed(&without_effects.refitted.hypothesis);
     let short = parts.verdict != Verdict::Consistent && !explains(fitter, &parts.search.repaired, false);
     let bent = parts.verdict == Verdict::Unexplained && has_departed(&parts.search.repaired.hypothesis);
-    let wrong_quantity = || without_effects.explained_by_wrong_quantity(fitter, !bent);
-    let found = if short || bent { wrong_quantity() } else { None };
+    let found = match bends && (short || bent) {
+        true => without_effects.explained_by_wrong_quantity(fitter, !bent),
+        false => None,
+    };
     if let Some(found) = found {
         let with = Search { candidates: found.candidates.clone(), ..without_effects.clone() };
         let wrong = from_found(with, found);
