@@ -1,6 +1,6 @@
 //! The state of a structure that a change is told from.
 
-use crate::settings::statements::baseline::MORE_THAN_NOISE;
+use crate::settings::statements::baseline::{ALIKE, FEWEST_ALIKE, MORE_THAN_NOISE};
 use crate::{Fit, Observation};
 use serde::Serialize;
 
@@ -14,6 +14,24 @@ pub struct Baseline {
     pub calibrated: Fit,
     /// The modes then and now, ascending in frequency.
     pub modes: Vec<ModeChange>,
+}
+
+impl Baseline {
+    /// ln of the ratio by which all natural frequencies have changed, where three or more have changed by the
+    /// same and by more than noise explains: every modulus lower alike, every mass heavier.
+    pub fn common_change(&self) -> Option<f64> {
+        let both = |mode: &ModeChange| Some((mode.change?.frequency, mode.change_std?.frequency));
+        let all: Vec<(f64, f64)> = self.modes.iter().filter_map(both).collect();
+        if all.len() < FEWEST_ALIKE || self.modes.iter().any(|mode| mode.change.is_none()) {
+            return None;
+        }
+        let mean = all.iter().map(|(change, _)| change).sum::<f64>() / all.len() as f64;
+        let is_alike = |&(change, std): &(f64, f64)| {
+            let noise = MORE_THAN_NOISE * std;
+            change.abs() > noise && (change - mean).abs() <= noise.max(ALIKE * mean.abs())
+        };
+        all.iter().all(is_alike).then_some(mean)
+    }
 }
 
 /// Natural frequency and damping ratio of a mode.

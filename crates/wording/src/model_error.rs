@@ -121,7 +121,30 @@ fn since(diagnosis: &Diagnosis, baseline: &ModelError, [refitted, repaired]: [&M
             sizes(refitted)
         ),
     };
-    format!("{change} On the baseline itself the calibrated model is off by {}.", sizes(baseline))
+    let alike = match diagnosis.verdict {
+        Verdict::Consistent | Verdict::Unexplained => {
+            diagnosis.baseline.as_ref().and_then(|baseline| baseline.common_change()).map(changed_alike)
+        }
+        Verdict::Explained | Verdict::PartlyExplained => None,
+    };
+    format!(
+        "{change}{} On the baseline itself the calibrated model is off by {}.",
+        alike.unwrap_or_default(),
+        sizes(baseline)
+    )
+}
+
+/// What changes all natural frequencies alike, ln of whose ratio is `change`, with a space before.
+fn changed_alike(change: f64) -> String {
+    let (frequencies, moduli) = (change.exp_m1(), (2.0 * change).exp_m1());
+    let way = |share: f64| if share < 0.0 { "lower" } else { "higher" };
+    format!(
+        " All natural frequencies are {} by {} alike, as by moduli that are {} by {} everywhere: compare the temperatures of both tests.",
+        way(frequencies),
+        percent(frequencies.abs()),
+        way(moduli),
+        percent(moduli.abs())
+    )
 }
 
 /// One kind of a model's error, for a table or a sentence.

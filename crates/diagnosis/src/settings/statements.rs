@@ -4,6 +4,10 @@
 pub(crate) mod baseline {
     /// Standard deviations beyond which a change of a mode is more than noise.
     pub(crate) const MORE_THAN_NOISE: f64 = 3.0;
+    /// Modes from which a change that they share is no coincidence.
+    pub(crate) const FEWEST_ALIKE: usize = 3;
+    /// Share of a change by which the modes that share it may differ.
+    pub(crate) const ALIKE: f64 = 0.05;
 }
 
 /// Findings.

@@ -4,8 +4,10 @@ use crate::common;
 use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Hypothesis, Tried, Verdict};
 use jointscope::fixture::{Effect, EffectKind, Place};
 use jointscope::wording::Summary;
-use jointscope::{Fixture, FrfPair, FrfSet, Remarks};
+use jointscope::{Fixture, FrfPair, FrfSet, Remarks, Says, SpectralLines};
 use jointscope_rig::{Instrument, drawn_within_tolerance, frfs, generator};
+use jointscope_samples::transverse;
+use serde_json::json;
 use std::path::Path;
 
 /// Physics that the fixture does not state and no effect imitates exactly: blocks that bend far above the
@@ -112,6 +114,36 @@ fn another_structure_is_no_baseline() {
     let other = frfs.on_lines(|line| line < 12).unwrap();
     let options = DiagnosisOptions { baseline: Some(other), ..DiagnosisOptions::default() };
     assert!(Diagnosis::of(&fixture, &frfs, &options).is_err());
+}
+
+#[test]
+fn what_changes_every_frequency_alike_is_told_as_such_and_what_changes_one_more_is_not() {
+    let frame = |factors: [f64; 3]| {
+        let columns = |factor: f64| json!([[{"value": factor * 6.0e4, "std": 3.0e3}, 0.0], [0.0, 0.0]]);
+        let storey = |mass: f64| json!({ "mass": {"value": mass, "std": 0.002 * mass}, "rotates": false });
+        Fixture::from_value(&json!({
+            "bodies": { "F1": storey(3.1), "F2": storey(3.9), "F3": storey(3.0) },
+            "points": { "1": { "body": "F1", "x": 0.3 }, "2": { "body": "F2", "x": 0.6 }, "3": { "body": "F3", "x": 0.9 } },
+            "joints": { "J12": { "from": "1", "to": "2", "stiffness": columns(factors[0]) }, "J23": { "from": "2", "to": "3", "stiffness": columns(factors[1]) } },
+            "supports": { "S": { "point": "1", "stiffness": {"value": factors[2] * 6.0e4, "std": 3.0e3} } },
+            "damping": { "modal_ratios": [{"value": 0.010, "std": 0.0025}, {"value": 0.012, "std": 0.003}, {"value": 0.015, "std": 0.00375}] },
+        }))
+        .unwrap()
+    };
+    let pairs = transverse(&[("1", "1"), ("2", "1"), ("3", "1")]);
+    let lines = SpectralLines::even(2.0, 0.125, 400).unwrap();
+    let recorded = |factors: [f64; 3], seed: u64| {
+        let exact = frfs(&frame(factors), &pairs, &lines, Instrument::AsDescribed).unwrap();
+        common::hammer(seed).measure(&exact).unwrap()
+    };
+    let said = |factors: [f64; 3]| {
+        diagnosed(&frame([1.0; 3]), &recorded(factors, 2), Some(recorded([1.0; 3], 1))).says()
+    };
+    let alike = said([0.99; 3]);
+    assert!(alike.contains("All natural frequencies are lower by 0.50 % alike"), "{alike}");
+    assert!(alike.contains("moduli that are lower by 1.0 % everywhere"), "{alike}");
+    let other = said([0.99, 0.98, 1.0]);
+    assert!(!other.contains("alike"), "{other}");
 }
 
 /// A case that lies beside the workspace: its fixture, recording and truth.
