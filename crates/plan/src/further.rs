@@ -110,8 +110,12 @@ fn weighed(names: &Names, fits: &[(At, f64)], observation: &Observation) -> Weig
     let costs = costs(names.inflation.max(variance_inflation(chi2_per_dof, correlation)));
     let lowest = costs[least(&costs)];
     let weight = |cost: &f64| (-0.5 * (cost - lowest)).exp();
-    let misfit = observation.excess(chi2_per_dof).max(0.0);
-    let unlisted = (names.unlisted.ln() + 0.5 * misfit * misfit).min(MOST_UNLISTED).exp().max(names.unlisted);
+    let misfit = observation.excess(chi2_per_dof);
+    let is_met = misfit <= MISFIT;
+    let unlisted = match is_met {
+        true => names.unlisted,
+        false => names.unlisted.max((names.unlisted.ln() + 0.5 * misfit * misfit).min(MOST_UNLISTED).exp()),
+    };
     let total = costs.iter().map(weight).sum::<f64>() + unlisted;
     let name = |(name, cost): (&Name, &f64)| WeighedName {
         effect: name.effect.clone(),
@@ -120,7 +124,6 @@ fn weighed(names: &Names, fits: &[(At, f64)], observation: &Observation) -> Weig
     };
     let mut all: Vec<WeighedName> = names.names.iter().zip(&costs).map(name).collect();
     all.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    let is_met = misfit <= MISFIT;
     Weighed {
         says: says::weighed(&all, chi2_per_dof, is_met),
         remarks: says::remarks_of_two_tests(names.added),

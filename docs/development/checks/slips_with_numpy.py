@@ -13,6 +13,9 @@ H1 and coherence of ten blows with 0.3 % noise, or hits over time. Kinds:
     record  one record in g, turned round, or a fifth too small: not `consistent`, and that record named
     joint   structural damping of 1 or 2 %, four FRFs: (k - true)/stated deviation of k11, k12, k22
     hits    hits of two strengths whose amplifiers rest elsewhere before each: no change with amplitude
+    window  such hits under an exponential window of 4 to 8 1/s: that window, with 0.8, within a twentieth
+    column  a frame of three storeys one of whose columns is softer by a quarter to a half, ratios read with it: its stiffness, with 0.9, within a hundredth
+    second  the far end of the strip turns on the block, and two FRFs do not tell; a second test with 200 g on A, its damping 5 % higher: `plan` says that end, with 0.9, or has nothing left to separate
 
 Ends with status 1 where one is not right, or where scores of `joint` have a root mean square above 1.6.
 """
@@ -59,7 +62,8 @@ def drawn(fixture, random):
 
 
 class Structure:
-    def __init__(self, truth):
+    def __init__(self, truth, turns=np.inf, added=0.0):
+        """`turns` is the rotational stiffness between strip and block at point 3, `added` a mass on A at x = 0."""
         self.truth = truth
         a, b = truth["bodies"]["A"], truth["bodies"]["B"]
         self.mass = np.diag([a["mass"], a["inertia"], b["mass"], b["inertia"]])
@@ -68,11 +72,16 @@ class Structure:
         beam = truth["joints"]["J"]["beam"]
         bending = beam["youngs_modulus"] * beam["second_moment"]
         self.joint = bending / length**3 * np.array([[12, -6 * length], [-6 * length, 4 * length**2]])
-        turns = np.array([[0, 1, 0, 0], [0, 0, 0, 1]])
-        across = np.array([end - start - length * turns[0], turns[1] - turns[0]])
+        compliance = np.linalg.inv(self.joint)
+        compliance[1, 1] += 1 / turns
+        self.joint = np.linalg.inv(compliance)
+        at_zero = np.array([1, -a["x_cg"], 0, 0])
+        self.mass += added * np.outer(at_zero, at_zero)
+        rotation = np.array([[0, 1, 0, 0], [0, 0, 0, 1]])
+        across = np.array([end - start - length * rotation[0], rotation[1] - rotation[0]])
         self.stiffness = across.T @ self.joint @ across
-        root = np.diag(np.diag(self.mass) ** -0.5)
-        squares, shapes = np.linalg.eigh(root @ self.stiffness @ root)
+        root = np.linalg.inv(np.linalg.cholesky(self.mass)).T
+        squares, shapes = np.linalg.eigh(root.T @ self.stiffness @ root)
         self.frequencies, self.shapes = np.sqrt(np.abs(squares)), root @ shapes
         self.ratios = np.array([0, 0, *truth["damping"]["modal_ratios"]]) if "modal_ratios" in truth["damping"] else np.zeros(4)
 
@@ -150,8 +159,13 @@ def case(kind, number, seed, program, folder):
         places = [(0, 0), (0, 1), (1, 1)]
         scores = np.array([(joint["stiffness"][i][j] - structure.joint[i, j]) / joint["std"]["stiffness"][i][j] for i, j in places])
         return f"{joint['law']}, {np.round(scores, 2)}", scores
-    if kind == "hits":
-        write(folder / "test.uff", hits(structure, random))
+    if kind == "column":
+        return column(random, program, folder)
+    if kind == "second":
+        return second(fixture, structure.truth, random, program, folder)
+    decay = float(random.uniform(4, 8)) if kind == "window" else 0.0
+    if kind in ("hits", "window"):
+        write(folder / "test.uff", hits(structure, random, decay))
     else:
         dx = float(random.choice([-1, 1]) * (0.001 if kind == "sensor" and number % 2 else random.uniform(0.002, 0.006)))
         beside = {"hammer": ("1", (0.0, dx)), "sensor": ("1", (dx, 0.0))}.get(kind)
@@ -168,6 +182,9 @@ def case(kind, number, seed, program, folder):
     said = f"{answer['verdict']} {names}"
     if kind in ("null", "hits"):
         return said, answer["verdict"] == "consistent"
+    if kind == "window":
+        value = answer["findings"][0]["parameters"]["decay"]["value"] if [name[0] for name in names] == ["exponential_window"] else np.nan
+        return f"{said}, {value / decay:.3f} of what it is", abs(value / decay - 1) < 0.05 and names[0][2] >= 0.8
     missed = answer["fit"]["nrmse"]
     said += f", misses {missed['refitted']:.3f} refitted, {missed['repaired']:.3f} repaired"
     if kind in ("hammer", "sensor", "losses"):
@@ -181,8 +198,62 @@ def case(kind, number, seed, program, folder):
     return said + (", record named" if named else ""), answer["verdict"] != "consistent" and (named or alone)
 
 
-def hits(structure, random, rate=5120.0, samples=8192):
-    """Five blows at points 1 and 2 each, two sensors, offsets of half a m/s² that differ from hit to hit; datasets. Spectra of a record 32 times as long, in which all rings out."""
+def column(random, program, folder):
+    """A frame of three storeys on columns, and what is said of the one that is softer."""
+    masses, stiffness, factor = random.uniform(3, 4, 3), random.uniform(4e4, 8e4), random.uniform(0.5, 0.75)
+    ratios, soft = [0.010, 0.012, 0.015], int(random.integers(2))
+    quantity = lambda value, std: {"value": float(value), "std": float(std)}
+    columns = lambda a, b: {"from": a, "to": b, "stiffness": [[quantity(stiffness, 0.05 * stiffness), 0.0], [0.0, 0.0]]}
+    fixture = {
+        "bodies": {f"F{at + 1}": {"mass": quantity(mass, 2e-3 * mass), "rotates": False} for at, mass in enumerate(masses)},
+        "points": {str(at): {"body": f"F{at}", "x": quantity(0.3 * at, 1e-4)} for at in (1, 2, 3)},
+        "joints": {"J12": columns("1", "2"), "J23": columns("2", "3")},
+        "supports": {"ground": {"point": "1", "stiffness": quantity(stiffness, 0.05 * stiffness)}},
+        "damping": {"modal_ratios": [quantity(ratio, 0.25 * ratio) for ratio in ratios]},
+    }
+    (folder / "fixture.json").write_text(json.dumps(fixture))
+    truth = drawn(fixture, random)
+    true = [truth["supports"]["ground"]["stiffness"], *(truth["joints"][name]["stiffness"][0][0] for name in ("J12", "J23"))]
+    true[1 + soft] *= factor
+    ground, first, second = true
+    matrix = np.array([[ground + first, -first, 0], [-first, first + second, -second], [0, -second, second]])
+    root = np.diag([truth["bodies"][f"F{at}"]["mass"] ** -0.5 for at in (1, 2, 3)])
+    squares, shapes = np.linalg.eigh(root @ matrix @ root)
+    shapes, s, all = root @ shapes, 2j * np.pi * 0.1 * np.arange(20, 480), {}
+    for response, reference in [("1", "1"), ("2", "1"), ("3", "1"), ("3", "3")]:
+        residues = shapes[int(response) - 1] * shapes[int(reference) - 1]
+        all[response, reference] = sum(r * s**2 / (s**2 + 2 * z * np.sqrt(m) * s + m) for r, z, m in zip(residues, truth["damping"]["modal_ratios"], squares))
+    frfs, coherences = measured(all, random)
+    write(folder / "test.uff", [dataset(kind, pair, s.imag / 2 / np.pi, of[pair], "x") for pair in frfs for kind, of in ((4, frfs), (6, coherences))])
+    answer = run(program, folder, "diagnose", "fixture.json", "test.uff")
+    joint = ("J12", "J23")[soft]
+    found = [(f["kind"], f["place"], round(f["probability"], 2), next(iter(f["parameters"].values()))["value"]) for f in answer["findings"]]
+    stated = {"quantity_error": 1.0, "stiffness_change": stiffness}
+    is_right = len(found) == 1 and joint in found[0][1] and found[0][2] >= 0.9 and abs(found[0][3] * stated.get(found[0][0], np.nan) / true[1 + soft] - 1) < 0.01
+    return f"{answer['verdict']} {found}, {joint} is {true[1 + soft]:.0f} N/m", is_right
+
+
+def second(fixture, truth, random, program, folder):
+    """What `plan` says of two tests together, the second with a mass and with damping of its own."""
+    turns, pairs = float(random.uniform(1.5e4, 4e4)), [("3", "1"), ("4", "1")]
+    other = fixture | {"physics": [{"kind": "added_mass", "place": "A", "x": {"value": 0.0, "std": 2e-4}, "mass": {"value": 0.2, "std": 1e-4}}]}
+    (folder / "with-mass.json").write_text(json.dumps(other))
+    write_frfs(folder / "test.uff", Structure(truth, turns).accelerances(pairs), random)
+    structure = Structure(truth, turns, 0.2)
+    structure.ratios = 1.05 * structure.ratios
+    write_frfs(folder / "mass-test.uff", structure.accelerances(pairs), random)
+    words = ["plan", "fixture.json", "test.uff", "--second-test", "with-mass.json", "mass-test.uff", "--json"]
+    ran = subprocess.run([program, *words], cwd=folder, capture_output=True, text=True, env=dict(os.environ, RAYON_NUM_THREADS="1"))
+    if ran.returncode:
+        why = ran.stderr.strip().splitlines()[-1]
+        return why, "nothing to separate" in why and "point 3 in rotation" in why
+    answer = json.loads(ran.stdout)
+    names = [(name["kind"], name["place"], name.get("dof"), round(name["probability"], 2), round(name["before"], 2)) for name in answer["names"][:2]]
+    return f"{names}, chi2 per degree of freedom {answer['chi2_per_dof']:.2f}", names[0][:3] == ("interface_compliance", "3", "rotation") and names[0][3] >= 0.9
+
+
+def hits(structure, random, decay=0.0, rate=5120.0, samples=8192):
+    """Five blows at points 1 and 2 each, two sensors, offsets of half a m/s² that differ from hit to hit, or none under an exponential window; datasets. Spectra of a record 32 times as long, in which all rings out."""
     length, datasets = 32 * samples, []
     s = 2j * np.pi * np.fft.rfftfreq(length, 1 / rate)
     time = np.arange(length) / rate
@@ -198,8 +269,10 @@ def hits(structure, random, rate=5120.0, samples=8192):
             for response in "34":
                 residues = (structure.row(response) @ structure.shapes) * (structure.row(reference) @ structure.shapes)
                 signal = np.fft.irfft(sum(r * mode for r, mode in zip(residues, modes)) * spectrum, length)[:samples]
-                signals[response] = signal + 2e-3 * np.sqrt(np.mean(signal**2)) * random.standard_normal(samples) + 0.5 * random.standard_normal()
+                offset = 0.0 if decay else 0.5 * random.standard_normal()
+                signals[response] = signal + 2e-3 * np.sqrt(np.mean(signal**2)) * random.standard_normal(samples) + offset
             for name, signal in signals.items():
+                signal = signal * np.exp(-decay * time[:samples])
                 pair = (reference if name == "force" else name, reference)
                 each = dataset(1, pair, time[:samples], signal, "force" if name == "force" else "response")
                 datasets.append(each | {"ver_num": 5 * at + blow + 1})
@@ -211,7 +284,7 @@ def main():
     parser.add_argument("program", type=lambda path: str(pathlib.Path(path).resolve()))
     parser.add_argument("--cases", type=int, default=7)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", nargs="*", default=["null", "hammer", "sensor", "losses", "record", "joint", "hits"])
+    parser.add_argument("--only", nargs="*", default=["null", "hammer", "sensor", "losses", "record", "joint", "hits", "window", "column", "second"])
     parser.add_argument("--keep", type=pathlib.Path)
     arguments = parser.parse_args()
     is_right = True
