@@ -253,7 +253,7 @@ def second(fixture, truth, random, program, folder):
 
 
 def hits(structure, random, decay=0.0, rate=5120.0, samples=8192):
-    """Five blows at points 1 and 2 each, two sensors, offsets of half a m/s² that differ from hit to hit, or none under an exponential window; datasets. Spectra of a record 32 times as long, in which all rings out."""
+    """Five blows at points 1 and 2 each, two sensors (under a window a third at point 1), offsets of half a m/s² that differ from hit to hit, or none under an exponential window; datasets. Spectra of a record 32 times as long, in which all rings out."""
     length, datasets = 32 * samples, []
     s = 2j * np.pi * np.fft.rfftfreq(length, 1 / rate)
     time = np.arange(length) / rate
@@ -266,7 +266,7 @@ def hits(structure, random, decay=0.0, rate=5120.0, samples=8192):
             force = peak * np.where((time > begin) & (time < begin + 8e-4), np.sin(np.pi * (time - begin) / 8e-4) ** 2, 0.0)
             spectrum = np.fft.rfft(force)
             signals = {"force": force[:samples] + 2e-4 * peak * random.standard_normal(samples)}
-            for response in "34":
+            for response in "341" if decay else "34":
                 residues = (structure.row(response) @ structure.shapes) * (structure.row(reference) @ structure.shapes)
                 signal = np.fft.irfft(sum(r * mode for r, mode in zip(residues, modes)) * spectrum, length)[:samples]
                 offset = 0.0 if decay else 0.5 * random.standard_normal()
