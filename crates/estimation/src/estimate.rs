@@ -47,8 +47,7 @@ impl Estimate {
         let used: Vec<&Conditioned> =
             all.iter().zip(&reports).filter(|(_, report)| report.used).map(|(hit, _)| hit).collect();
         if used.is_empty() {
-            let faults = reports.iter().filter_map(|r| Some(format!("hit {}: {}", r.number, r.why()?)));
-            return Err(EstimateError::AllRejected(faults.collect::<Vec<_>>().join(", ")));
+            return Err(EstimateError::AllRejected(all_rejected(&reports)));
         }
         let decay = decay(&used, options.response_window);
         let samples = hits.iter().map(Hit::samples).max().unwrap_or(0);
@@ -129,6 +128,22 @@ fn report(hit: &Conditioned, options: &EstimateOptions) -> HitReport {
         rejected_by_hand,
         used: !rejected_by_hand && (hit.faults.is_empty() || options.keep.contains(&number)),
     }
+}
+
+/// Why no hit is used, each reason once with its hits.
+fn all_rejected(reports: &[HitReport]) -> String {
+    let mut reasons: Vec<(String, Vec<String>)> = Vec::new();
+    for (why, number) in reports.iter().filter_map(|report| Some((report.why()?, report.number.to_string())))
+    {
+        match reasons.iter_mut().find(|(known, _)| *known == why) {
+            Some((_, hits)) => hits.push(number),
+            None => reasons.push((why, vec![number])),
+        }
+    }
+    let told = |(why, hits): (String, Vec<String>)| {
+        format!("{} {}: {why}", if hits.len() == 1 { "hit" } else { "hits" }, hits.join(", "))
+    };
+    reasons.into_iter().map(told).collect::<Vec<_>>().join("; ")
 }
 
 /// The decay of the window that is asked for, 1/s.

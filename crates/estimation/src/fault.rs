@@ -66,7 +66,12 @@ impl fmt::Display for Fault {
                 write!(f, "double hit: the hammer struck again {ms:.1} ms later, {percent:.0} % as hard")
             }
             Fault::Overload { signal, at } => {
-                write!(f, "overload: {signal} is cut off at {at:.4e}")
+                let unit = if *signal == Signal::Force { " N" } else { "" };
+                write!(
+                    f,
+                    "overload: {signal} is cut off at {}{unit}, widen the range of its input",
+                    figures(*at)
+                )
             }
             Fault::StartsAfterImpact => {
                 write!(f, "the record starts when the hammer is in contact already: set a pre-trigger")
@@ -110,6 +115,16 @@ pub(crate) fn faults(hit: &Hit, force: &[f64], pulse: Option<&Pulse>) -> Vec<Fau
         }
     }
     faults
+}
+
+/// Four significant digits, without zeros that say nothing.
+fn figures(value: f64) -> String {
+    let exponent = value.abs().log10().floor().clamp(-12.0, 12.0) as i32;
+    let digits = format!("{value:.*}", (3 - exponent).max(0) as usize);
+    match digits.contains('.') {
+        true => digits.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => digits,
+    }
 }
 
 /// Whether a signal swings to and fro instead of pushing one way.

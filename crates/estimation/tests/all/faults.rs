@@ -78,6 +78,16 @@ fn a_short_blow_beyond_the_range_of_the_force_is_found_and_all_others_that_reach
 }
 
 #[test]
+fn hits_that_are_rejected_for_one_reason_are_told_together() {
+    let mut force = vec![0.0; 4096];
+    force[80..84].copy_from_slice(&[31.0, 70.0, 70.0, 12.0]);
+    let all = (1..=3).map(|number| hit(number, force.clone(), TWO_MODES.answer(&force)));
+    let error = of(&all.collect::<Vec<_>>()).unwrap_err().to_string();
+    let told = "every hit is rejected: hits 1, 2, 3: overload: the force is cut off at 70 N, widen the range";
+    assert!(error.starts_with(told), "{error}");
+}
+
+#[test]
 fn a_record_that_starts_after_the_impact_and_one_without_impact_are_rejected() {
     let late: Vec<f64> = pulse(4096, 80, 4, 90.0)[81..].iter().copied().chain([0.0; 81]).collect();
     let estimate = of(&beside_two(late)).unwrap();
