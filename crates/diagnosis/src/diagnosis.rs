@@ -1,6 +1,5 @@
 //! The whole diagnosis: what is left out before it, the route, and what is done once more with other noise.
 
-use crate::contradiction::contradictory;
 use crate::departures::{Departure, departures, has_departed};
 use crate::drift::{Drifted, TestDrift};
 use crate::evidence::cost;
@@ -14,12 +13,13 @@ use crate::options::{DiagnosisError, DiagnosisOptions};
 use crate::routes::{self, Parts, chance};
 use crate::search::Search;
 use crate::settings::Settings;
+use crate::usable::Usable;
 use crate::work::Work;
 use crate::{Baseline, Hypothesis, Observation, Watch};
 use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::Fixture;
 use jointscope_lumped::Assembly;
-use jointscope_spectra::{FrfPair, FrfSet};
+use jointscope_spectra::FrfSet;
 use std::sync::Arc;
 
 /// The whole answer.
@@ -95,49 +95,11 @@ impl Diagnosis {
         options: &DiagnosisOptions,
         watch: Watch,
     ) -> Result<Self, DiagnosisError> {
-        let asked = |hz: f64| {
-            options.band.is_none_or(|(from, to)| hz >= from && hz <= to)
-                && !options.exclude.iter().any(|(from, to)| hz >= *from && hz <= *to)
-        };
-        let highest = frfs.lines().hz().last().copied().unwrap_or_default();
-        let coordinates = Assembly::new(fixture, highest).map_or(0, |assembly| assembly.order());
-        let work = Work::of(options.settings.work, options.time_limit).for_models_of(coordinates);
-        let work = Arc::new(work);
-        let observation = Observation::new(frfs, asked)?.counted(Arc::clone(&work));
+        let work = Arc::new(work_for(fixture, frfs, options));
         let fixture = &with_gains_of_records(fixture, frfs, options);
         let nominal = Hypothesis::nominal(fixture, options.exact);
-        nominal.predict(&observation)?;
-        let contradictory = contradictory(&observation, &nominal);
-        let in_use = |hz: f64| asked(hz) && !contradictory.iter().any(|(from, to)| hz >= *from && hz <= *to);
-        let observation = match contradictory.is_empty() {
-            true => observation,
-            false => Observation::new(frfs, in_use)?.counted(work),
-        };
-        let drifted = Drifted::of(&observation, &nominal, &options.settings.modal);
-        let agreeing = |pair: &FrfPair| drifted.as_ref().is_none_or(|drifted| drifted.keeps(&pair.reference));
-        let observation = match drifted {
-            Some(_) => observation.reduced(|_| true, agreeing).unwrap_or(observation),
-            None => observation,
-        };
-        let hold_out: Vec<FrfPair> = options.hold_out.iter().filter(|pair| agreeing(pair)).cloned().collect();
-        let options = &DiagnosisOptions { hold_out, ..options.clone() };
-        let diagnosed = |observation: Observation| {
-            let few = observation.searched(&options.hold_out);
-            let searched = few.as_ref().unwrap_or(&observation);
-            let fitter = Fitter { observation: searched, settings: &options.settings, watch };
-            let mut parts = match &options.baseline {
-                Some(baseline) => {
-                    let baseline = Observation::new(baseline, in_use)?;
-                    let baseline = baseline.reduced(|_| true, agreeing).unwrap_or(baseline);
-                    changed_since(&fitter, &observation, baseline, (fixture, options.exact))?
-                }
-                None => routes::judged(&fitter, fixture, options)?,
-            };
-            if few.is_some() {
-                parts = parts.on_all(&fitter.on(&observation));
-            }
-            Ok(Self::of_parts(parts, observation, &options.settings))
-        };
+        let (usable, observation) = Usable::of(frfs, options, &nominal, work)?;
+        let diagnosed = |observation| Self::by_its_route(fixture, &usable, observation, watch);
         let diagnosis = diagnosed(observation)?;
         let diagnosis = match options.baseline {
             None => diagnosis
@@ -145,12 +107,33 @@ impl Diagnosis {
                 .beside_modes(&options.settings, diagnosed)?,
             Some(_) => diagnosis,
         };
-        let diagnosis = Diagnosis { contradictory, ..diagnosis };
-        let within_estimates = options.estimated
-            && diagnosis.refitted.0 < options.settings.evidence.explained.0
-            && !has_departed(&diagnosis.stated[0]);
-        let diagnosis = if within_estimates { diagnosis.without_findings() } else { diagnosis };
-        Ok(Diagnosis { drift: drifted.and_then(|drifted| diagnosis.told_drift(&drifted)), ..diagnosis })
+        let diagnosis = diagnosis.within_estimates(options);
+        let drift = usable.drifted.as_ref().and_then(|drifted| diagnosis.told_drift(drifted));
+        Ok(Diagnosis { contradictory: usable.contradictory, drift, ..diagnosis })
+    }
+
+    /// What the route of a recording makes of an observation, where FRFs are many of a part of them first.
+    fn by_its_route(
+        fixture: &Fixture,
+        usable: &Usable,
+        observation: Observation,
+        watch: Watch,
+    ) -> Result<Self, DiagnosisError> {
+        let options = &DiagnosisOptions { hold_out: usable.held_out(), ..usable.options.clone() };
+        let few = observation.searched(&options.hold_out);
+        let searched = few.as_ref().unwrap_or(&observation);
+        let fitter = Fitter { observation: searched, settings: &options.settings, watch };
+        let mut parts = match &options.baseline {
+            Some(baseline) => {
+                let baseline = usable.part_of_baseline(baseline)?;
+                changed_since(&fitter, &observation, baseline, (fixture, options.exact))?
+            }
+            None => routes::judged(&fitter, fixture, options)?,
+        };
+        if few.is_some() {
+            parts = parts.on_all(&fitter.on(&observation));
+        }
+        Ok(Self::of_parts(parts, observation, &options.settings))
     }
 
     /// The answer that the parts of a route make.
@@ -253,6 +236,15 @@ impl Diagnosis {
         })
     }
 
+    /// The same, or without findings where the FRFs were estimated and the fixture as refitted explains them,
+    /// none of its quantities far off.
+    fn within_estimates(self, options: &DiagnosisOptions) -> Self {
+        let explains_all = options.estimated
+            && self.refitted.0 < options.settings.evidence.explained.0
+            && !has_departed(&self.stated[0]);
+        if explains_all { self.without_findings() } else { self }
+    }
+
     /// The largest probability of a finding.
     fn surest(&self) -> f64 {
         self.findings.iter().map(|finding| finding.probability).fold(0.0, f64::max)
@@ -281,6 +273,13 @@ impl Diagnosis {
         [&self.search.nominal, &self.search.refitted, &self.search.repaired]
             .map(|fit| fit.chi2_per_dof(&self.observation))
     }
+}
+
+/// How much work a diagnosis may do.
+fn work_for(fixture: &Fixture, frfs: &FrfSet, options: &DiagnosisOptions) -> Work {
+    let highest = frfs.lines().hz().last().copied().unwrap_or_default();
+    let coordinates = Assembly::new(fixture, highest).map_or(0, |assembly| assembly.order());
+    Work::of(options.settings.work, options.time_limit).for_models_of(coordinates)
 }
 
 /// The fixture, each record's gain moving within what is stated of all of them, on lines and by modes; of a

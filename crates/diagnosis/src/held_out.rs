@@ -7,6 +7,10 @@ use crate::{DiagnosisError, DiagnosisOptions, Hypothesis, Observation};
 use jointscope_findings::HeldOut;
 use jointscope_spectra::FrfPair;
 
+/// This step, as [`Diagnosis::stopped`](crate::Diagnosis::stopped) names it where the work did not suffice
+/// for it.
+pub(crate) const JUDGEMENT_STEP: &str = "the judgement on what is held out";
+
 /// A recording divided into what a search may see, and what it is judged on.
 pub(crate) struct Division {
     /// The observation without the held-out bands and FRFs.

@@ -79,6 +79,7 @@ mod settings;
 #[cfg(test)]
 mod simulated;
 mod together;
+mod usable;
 mod watch;
 mod work;
 

@@ -34,6 +34,10 @@ use jointscope_spectra::FrfPair;
 use num_complex::Complex64;
 use serde::{Serialize, Serializer};
 
+/// This step, as [`Diagnosis::stopped`](crate::Diagnosis::stopped) names it where the work did not suffice
+/// for it.
+pub(crate) const LOCATION_STEP: &str = "the places of what is left";
+
 /// A place through which one unknown scalar a line may act.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Site {

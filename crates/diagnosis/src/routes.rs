@@ -1,53 +1,28 @@
 //! The ways to a diagnosis: by the noise of the lines, by the error of the model, by what has changed since a
 //! baseline; and which of them a recording asks for.
 
+mod by_lines;
+mod by_modes;
+mod parts;
+
+pub(crate) use parts::{Parts, chance};
+
 use crate::departures::has_departed;
-use crate::evidence::{self, explains, nothing_can_be_stated, upper_tail};
-use crate::finding::{Finding, Tried};
+use crate::evidence::{self, explains};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::held_out::Division;
-use crate::location::{Location, located};
-use crate::modal::{Explaining, Known, ModalJudgement, ModelError, without_imitations};
-use crate::named::{findings, re_estimated, verdict};
+use crate::modal::ModalJudgement;
 use crate::options::{DiagnosisError, DiagnosisOptions};
 use crate::search::Search;
-use crate::settings::work::shares::{OF_DOUBTS, OF_HELD_OUT, OF_STEP_BY_LINES};
-use crate::{Baseline, Hypothesis, Observation};
-use jointscope_findings::{HeldOut, Verdict};
+use crate::settings::work::shares::OF_DOUBTS;
+use crate::{Baseline, Observation};
+use by_lines::{Start, by_lines};
+use by_modes::by_modes;
+use jointscope_findings::Verdict;
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_spectra::SpectraError;
-
-/// What a search that runs out of work leaves out, as `stopped` says it.
-const UNSEEN: &str = "the judgement on what is held out";
-const PLACES: &str = "the places of what is left";
-
-/// The fixture as it is given.
-#[derive(Clone, Copy)]
-struct Given<'a> {
-    fixture: &'a Fixture,
-    /// Whether its bare numbers are exact.
-    exact: bool,
-}
-
-impl Given<'_> {
-    /// The fixture as it stands and refitted to what `fitter` sees.
-    fn without_effects(self, fitter: &Fitter) -> Option<Search> {
-        Search::without_effects(fitter, self.fixture, self.exact)
-    }
-}
-
-/// What a search by lines of the whole recording sets out from.
-enum Start<'a> {
-    /// The fixture alone, or what the search finds that sees less.
-    Anew,
-    /// What was found among the modes.
-    Modes(&'a ModalJudgement, Explaining),
-    /// What was found among few names.
-    Found(Box<Search>),
-    /// It was made already.
-    Searched(Box<Search>),
-}
+use parts::Given;
 
 /// The diagnosis by the route that fits the recording.
 pub(crate) fn judged(
@@ -56,76 +31,80 @@ pub(crate) fn judged(
     options: &DiagnosisOptions,
 ) -> Result<Parts, DiagnosisError> {
     let division = Division::of(fitter.observation, options)?;
-    let given = Given { fixture, exact: options.exact };
-    let refitted = given.without_effects(fitter).ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
-    let from_found = |without_effects: Search, found: Search| {
-        let start = Start::Found(Box::new(found));
-        by_lines(fitter, without_effects, given, start, None, division.as_ref())
-    };
+    let given = Given { fitter, fixture, exact: options.exact, division: division.as_ref() };
+    let refitted = given.without_effects().ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
     if let Some(found) = refitted.explained_by_odd_record(fitter) {
-        return Ok(from_found(refitted, found));
+        return Ok(from_found(given, refitted, found, None));
     }
     let without_effects = refitted.clone().with_wrong_quantities(fitter);
-    // Where the fixture as refitted leaves more than noise, the comparison by modes says whether the model
-    // itself is in error: if it is, the noise of the lines decides nothing.
-    let may_err = !fixture.model_error().is_exact();
-    let modal = match may_err && without_effects.lacks_much(fitter, &without_effects.refitted) {
-        true => fitter.observation.work().within(fitter.settings.modal.share, || {
-            ModalJudgement::of(fitter, &without_effects.nominal.hypothesis, &without_effects.candidates, None)
-        }),
-        false => None,
-    };
+    let modal = compared_by_modes(given, &without_effects);
     // Modes lead to the nearest minimum where lines, peak beside peak, may end in another.
     let without_effects = match &modal {
         Some(modal) => Search { candidates: modal.candidates.clone(), ..without_effects }
             .refitted_from(fitter, &modal.stated[0]),
         None => refitted.refitted_widely(fitter).with_wrong_quantities(fitter),
     };
-    let moved = modal.as_ref().filter(|modal| modal.is_unexplained());
+    let modal = modal.as_ref();
+    let moved = modal.filter(|modal| modal.is_unexplained());
     if let Some(found) = moved.and_then(|_| without_effects.explained_by_moved_sensor(fitter)) {
-        return Ok(from_found(without_effects, found));
+        return Ok(from_found(given, without_effects, found, None));
     }
-    let parts = routed(fitter, &without_effects, given, modal.as_ref(), division.as_ref());
-    // Where no name brings the lines down to their noise, and the refit does by departing from what is stated,
-    // one quantity that is wrong may.
-    let left = without_effects.refitted.chi2_per_dof(fitter.observation);
-    let bends = left < evidence::explained(fitter.observation, fitter.settings)
-        && has_departed(&without_effects.refitted.hypothesis);
-    let short = parts.verdict != Verdict::Consistent && !explains(fitter, &parts.search.repaired, false);
-    let bent = parts.verdict == Verdict::Unexplained && has_departed(&parts.search.repaired.hypothesis);
-    let found = match bends && (short || bent) {
-        true => without_effects.explained_by_wrong_quantity(fitter, !bent),
-        false => None,
-    };
-    if let Some(found) = found {
-        let with = Search { candidates: found.candidates.clone(), ..without_effects.clone() };
-        let wrong = from_found(with, found);
-        if wrong.verdict == Verdict::Explained && wrong.findings.len() == 1 {
-            return Ok(wrong);
-        }
+    let parts = routed(given, &without_effects, modal);
+    if let Some(wrong) = explained_by_wrong_quantity(given, &without_effects, &parts) {
+        return Ok(wrong);
     }
     Ok(match parts.verdict {
-        Verdict::Unexplained => {
-            as_located(fitter, without_effects, given, modal.as_ref(), division.as_ref(), parts)
-        }
+        Verdict::Unexplained => as_located(given, without_effects, modal, parts),
         _ => parts,
     })
+}
+
+/// The diagnosis by lines that sets out from what was found among few names.
+fn from_found(given: Given, without_effects: Search, found: Search, modal: Option<&ModalJudgement>) -> Parts {
+    by_lines(given, without_effects, Start::Found(Box::new(found)), modal)
+}
+
+/// The comparison by modes where the fixture as refitted leaves more than noise: it says whether the model
+/// itself is in error, and if it is, the noise of the lines decides nothing.
+fn compared_by_modes(given: Given, without_effects: &Search) -> Option<ModalJudgement> {
+    let Given { fitter, fixture, .. } = given;
+    let may_err = !fixture.model_error().is_exact();
+    if !may_err || !without_effects.lacks_much(fitter, &without_effects.refitted) {
+        return None;
+    }
+    fitter.observation.work().within(fitter.settings.modal.share, || {
+        ModalJudgement::of(fitter, &without_effects.nominal.hypothesis, &without_effects.candidates, None)
+    })
+}
+
+/// What one quantity that is wrong makes of a recording that no name brings down to the noise of its lines,
+/// where the refit does by departing from what is stated, and that quantity explains it alone.
+fn explained_by_wrong_quantity(given: Given, without_effects: &Search, parts: &Parts) -> Option<Parts> {
+    let fitter = given.fitter;
+    let refitted = &without_effects.refitted;
+    let left = refitted.chi2_per_dof(fitter.observation);
+    let bends =
+        left < evidence::explained(fitter.observation, fitter.settings) && has_departed(&refitted.hypothesis);
+    let short = parts.verdict != Verdict::Consistent && !explains(fitter, &parts.search.repaired, false);
+    let bent = parts.verdict == Verdict::Unexplained && has_departed(&parts.search.repaired.hypothesis);
+    if !bends || !(short || bent) {
+        return None;
+    }
+    let found = without_effects.explained_by_wrong_quantity(fitter, !bent)?;
+    let with = Search { candidates: found.candidates.clone(), ..without_effects.clone() };
+    let wrong = from_found(given, with, found, None);
+    (wrong.verdict == Verdict::Explained && wrong.findings.len() == 1).then_some(wrong)
 }
 
 /// The diagnosis by lines or by modes, whichever the comparison by modes calls for. What explains the modes
 /// is stated where lines find nothing: for good where it leaves little of them or these come down to the
 /// noise by quantities far off alone, else as a part.
-fn routed(
-    fitter: &Fitter,
-    without_effects: &Search,
-    given: Given,
-    modal: Option<&ModalJudgement>,
-    division: Option<&Division>,
-) -> Parts {
-    let by_lines = |start: Start| by_lines(fitter, without_effects.clone(), given, start, modal, division);
+fn routed(given: Given, without_effects: &Search, modal: Option<&ModalJudgement>) -> Parts {
+    let fitter = given.fitter;
+    let by_lines = |start: Start| by_lines(given, without_effects.clone(), start, modal);
     let Some(modal) = modal.filter(|modal| !modal.needs_nothing()) else { return by_lines(Start::Anew) };
     let Some((start, is_near)) = from_modes(fitter, without_effects, modal) else {
-        return by_modes(fitter, without_effects, modal, division);
+        return by_modes(given, without_effects, modal);
     };
     let parts = by_lines(start);
     if parts.verdict != Verdict::Unexplained || !modal.names_all() {
@@ -134,8 +113,8 @@ fn routed(
     let left = parts.search.refitted.chi2_per_dof(fitter.observation);
     let bent = left < evidence::explained(fitter.observation, fitter.settings);
     match is_near || bent {
-        true => by_modes(fitter, without_effects, modal, division),
-        false => by_modes(fitter, without_effects, &modal.doubted(), division),
+        true => by_modes(given, without_effects, modal),
+        false => by_modes(given, without_effects, &modal.doubted()),
     }
 }
 
@@ -185,14 +164,8 @@ fn from_modes<'a>(
 
 /// What nothing explained, once more from the laws that were read at the places which explain most of it:
 /// where free scalars find a way, a search is to find it too.
-fn as_located(
-    fitter: &Fitter,
-    without_effects: Search,
-    given: Given,
-    modal: Option<&ModalJudgement>,
-    division: Option<&Division>,
-    parts: Parts,
-) -> Parts {
+fn as_located(given: Given, without_effects: Search, modal: Option<&ModalJudgement>, parts: Parts) -> Parts {
+    let fitter = given.fitter;
     let part = fitter.settings.location.part * without_effects.refitted.objective;
     let degrees = fitter.observation.degrees() as f64;
     let places = parts.locations.iter().filter(|place| place.chi2_per_dof * degrees < part);
@@ -200,220 +173,9 @@ fn as_located(
     let fit = |effect: Effect| fitter.local(&without_effects.nominal.hypothesis.with(effect), None, part);
     let fits = effects.filter_map(fit).filter(|fit| fit.objective < part);
     let Some(repaired) = fits.min_by(|a, b| a.objective.total_cmp(&b.objective)) else { return parts };
-    let found = Box::new(Search { repaired, ..without_effects.clone() });
-    let again = by_lines(fitter, without_effects, given, Start::Found(found), modal, division);
+    let found = Search { repaired, ..without_effects.clone() };
+    let again = from_found(given, without_effects, found, modal);
     if again.verdict == Verdict::Unexplained { parts } else { again }
-}
-
-/// What a route decides. `Diagnosis::of_parts` adds what follows from it.
-pub(crate) struct Parts {
-    pub verdict: Verdict,
-    pub search: Search,
-    /// What is said of the quantities of the refitted and the repaired model, where these are to predict.
-    pub stated: Option<[Hypothesis; 2]>,
-    pub findings: Vec<Finding>,
-    pub locations: Vec<Location>,
-    pub held_out: Option<HeldOut>,
-    pub model_error: Option<[ModelError; 2]>,
-    pub baseline_error: Option<ModelError>,
-    pub baseline: Option<Baseline>,
-    pub tried: Vec<Tried>,
-}
-
-impl Parts {
-    /// The same on all FRFs of a recording of which a part was searched: models that were fitted to lines are
-    /// fitted to all of them.
-    pub(crate) fn on_all(mut self, fitter: &Fitter) -> Self {
-        let by_lines = self.model_error.is_none();
-        let again = |fit: &Fit| match by_lines {
-            true => fitter.local(&fit.hypothesis, None, f64::INFINITY),
-            false => Fit::at(fit.hypothesis.clone(), fitter.observation),
-        };
-        let Search { nominal, refitted, repaired, candidates, told_apart, is_sure } = self.search;
-        let nominal = Fit::at(nominal.hypothesis.clone(), fitter.observation).unwrap_or(nominal);
-        let refitted = again(&refitted).unwrap_or(refitted);
-        let repaired = again(&repaired).unwrap_or(repaired);
-        self.search = Search { nominal, refitted, repaired, candidates, told_apart, is_sure };
-        if by_lines {
-            self.findings = re_estimated(fitter, &self.search, self.findings);
-            self.verdict = verdict(fitter, &self.search, &self.findings);
-        }
-        self
-    }
-}
-
-/// χ² per degree of freedom that a fit leaves, and the probability of one as large by chance.
-pub(crate) fn chance(observation: &Observation, fit: &Fit) -> (f64, f64) {
-    let chi2_per_dof = fit.chi2_per_dof(observation);
-    (chi2_per_dof, upper_tail(observation.excess(chi2_per_dof)))
-}
-
-/// The diagnosis where the noise of the lines decides, unless what they ask for imitates an error of the
-/// model.
-fn by_lines(
-    fitter: &Fitter,
-    without_effects: Search,
-    given: Given,
-    start: Start,
-    modal: Option<&ModalJudgement>,
-    division: Option<&Division>,
-) -> Parts {
-    let Fitter { observation, settings, .. } = *fitter;
-    let on_what_is_seen = |of_whole: Option<&ModalJudgement>| {
-        let division = division.filter(|_| observation.work().allows(UNSEEN))?;
-        blind(&fitter.on(&division.seen), given, of_whole)
-    };
-    // What sees less goes first where nothing is known, and the whole recording only has to confirm or
-    // correct it.
-    let anew = matches!(start, Start::Anew);
-    let first = if anew { on_what_is_seen(None) } else { None };
-    fitter.watch.stage("searching the whole recording");
-    let set_out_from = if let Start::Modes(modal, _) = &start { Some(*modal) } else { None };
-    let explaining = modal.filter(|modal| modal.explains());
-    // Modes that explain the recording decide as soon as lines ask for what these do not need.
-    let imitates =
-        |search: &Search| explaining.is_some() && without_imitations(fitter, search, modal).is_some();
-    let mut search = observation.work().within_rest(OF_STEP_BY_LINES, || match (start, &first) {
-        (Start::Searched(search), _) => *search,
-        (Start::Modes(modal, Explaining { fit, is_sure }), _) => {
-            let among_modes = modal.search_on(observation, &without_effects, &modal.stated);
-            let among_modes = Search { repaired: fit, ..among_modes };
-            let as_sure = Search { is_sure, ..without_effects };
-            let mut search = Search::continued_until(fitter, as_sure, &among_modes, imitates);
-            search.told_apart =
-                modal.told_from(&search.repaired.hypothesis, &search.candidates, settings.modal.bases.1);
-            search
-        }
-        (Start::Found(found), _) => Search::continued(fitter, without_effects, &found),
-        (Start::Anew, Some(first)) => Search::continued_until(fitter, without_effects, first, imitates),
-        (Start::Anew, None) => Search::searched(fitter, without_effects),
-    });
-    if let Some(fewer) = without_imitations(fitter, &search, modal) {
-        match explaining {
-            Some(modal) => return by_modes(fitter, &search, modal, division),
-            None => search = fewer,
-        }
-    }
-    let findings = match nothing_can_be_stated(fitter, &search.repaired, search.candidates.len()) {
-        true => Vec::new(),
-        false => observation.work().within_rest(OF_STEP_BY_LINES, || findings(fitter, &mut search)),
-    };
-    if let Some(modal) = modal.filter(|modal| modal.tells_from(fitter, &search.repaired.hypothesis)) {
-        return by_modes(fitter, &search, modal, division);
-    }
-    // What the best hypotheses leave may say that none of them is right: they would only adapt the model to
-    // the recording.
-    let doubtful = findings.iter().any(|finding| finding.stated() < settings.evidence.stated);
-    let findings = if doubtful { Vec::new() } else { findings };
-    if findings.is_empty() {
-        search.repaired = search.refitted.clone();
-    }
-    let findings = match modal {
-        Some(modal) if !findings.is_empty() => {
-            let found = &search.repaired.hypothesis;
-            let findings = modal.with_errors_of_modes(fitter, found, &search.candidates, findings);
-            modal.with_its_own_name(fitter, findings)
-        }
-        _ => findings,
-    };
-    let blind = if anew { first } else { on_what_is_seen(set_out_from) };
-    let held_out = division.zip(blind).and_then(|(d, blind)| d.judge(&blind, &search, observation));
-    let unlikely = chance(observation, &search.refitted).1 < settings.evidence.located;
-    let locations = match unlikely && observation.work().allows(PLACES) {
-        true => {
-            fitter.watch.stage("locating what is left");
-            located(*fitter, &search.nominal.hypothesis, &search.refitted)
-        }
-        false => Vec::new(),
-    };
-    let verdict = verdict(fitter, &search, &findings);
-    let tried =
-        modal.filter(|_| verdict == Verdict::Unexplained).map_or_else(Vec::new, ModalJudgement::tried);
-    Parts {
-        verdict,
-        findings,
-        locations,
-        held_out,
-        search,
-        stated: None,
-        model_error: None,
-        baseline_error: None,
-        baseline: None,
-        tried,
-    }
-}
-
-/// The search that does not see what is held out: that must not have chosen the names either. Where the
-/// search of the whole recording set out from its modes, `of_whole`, it may try the names that these told.
-fn blind(fitter: &Fitter, given: Given, of_whole: Option<&ModalJudgement>) -> Option<Search> {
-    fitter.watch.stage("searching without the lines that are held out");
-    let refitted = given.without_effects(fitter)?;
-    if let Some(found) = refitted.explained_by_odd_record(fitter) {
-        return Some(Search::continued(fitter, refitted, &found));
-    }
-    let refitted = if of_whole.is_none() { refitted.refitted_widely(fitter) } else { refitted };
-    let without_effects = refitted.with_wrong_quantities(fitter);
-    let modal = of_whole.and_then(|whole| {
-        let names = whole.known(&fitter.settings.modal);
-        let Search { nominal, candidates, .. } = &without_effects;
-        ModalJudgement::of(fitter, &nominal.hypothesis, candidates, Some(&names))
-    });
-    let found = modal.and_then(|modal| {
-        let Explaining { fit, is_sure } = modal.exact(fitter)?;
-        let among_modes = modal.search_on(fitter.observation, &without_effects, &modal.stated);
-        Some((Search { repaired: fit, ..among_modes }, is_sure))
-    });
-    Some(match found {
-        Some((among_modes, is_sure)) => {
-            Search::continued(fitter, Search { is_sure, ..without_effects }, &among_modes)
-        }
-        None => Search::searched(fitter, without_effects),
-    })
-}
-
-/// The diagnosis where the model's own error decides. `on_lines` is what lines made of the recording: the
-/// fixture refitted, or a search.
-fn by_modes(
-    fitter: &Fitter,
-    on_lines: &Search,
-    modal: &ModalJudgement,
-    division: Option<&Division>,
-) -> Parts {
-    let Fitter { observation, settings, .. } = *fitter;
-    let work = observation.work();
-    let (modal, search) = modal.predicted(fitter, on_lines);
-    let judge = |division: &Division| {
-        fitter.watch.stage("comparing by modes without what is held out");
-        let blind = fitter.on(&division.seen);
-        // Of what names nothing, only the refitted fixture is judged.
-        let named = search.repaired.hypothesis.effect_count() > 0;
-        let names = if named { modal.known(&settings.modal) } else { Known::default() };
-        let judged =
-            ModalJudgement::of(&blind, &on_lines.nominal.hypothesis, &on_lines.candidates, Some(&names))?;
-        let (_, blind) = judged.predicted(&blind, on_lines);
-        division.judge(&blind, &search, observation)
-    };
-    let division = division.filter(|_| work.allows(UNSEEN));
-    let held_out = division.and_then(|division| work.within_rest(OF_HELD_OUT, || judge(division)));
-    let locations = match modal.verdict {
-        Verdict::Unexplained if work.allows(PLACES) => {
-            let refitted = Fit::at(modal.stated[0].clone(), observation);
-            located(*fitter, &search.nominal.hypothesis, refitted.as_ref().unwrap_or(&search.refitted))
-        }
-        _ => Vec::new(),
-    };
-    Parts {
-        verdict: modal.verdict,
-        findings: modal.findings(&search.candidates),
-        locations,
-        held_out,
-        search,
-        stated: Some(modal.stated.clone()),
-        model_error: Some(modal.errors),
-        baseline_error: None,
-        baseline: None,
-        tried: modal.tried(),
-    }
 }
 
 /// The diagnosis of what has changed since a baseline.
@@ -428,7 +190,7 @@ pub(crate) fn since(
         ModalJudgement::since(fitter, &baseline, &as_stated.nominal.hypothesis, &as_stated.candidates);
     let (modal, before) = judged.ok_or(DiagnosisError::Baseline)?;
     let calibrated = Fit::at(before.calibrated, &baseline).ok_or(DiagnosisError::Baseline)?;
-    let parts = by_modes(fitter, &as_stated, &modal, None);
+    let parts = by_modes(Given { fitter, fixture, exact, division: None }, &as_stated, &modal);
     let baseline = Baseline { observation: baseline, calibrated, modes: before.modes };
     Ok(Parts { baseline_error: Some(before.error), baseline: Some(baseline), ..parts })
 }

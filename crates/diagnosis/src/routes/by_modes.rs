@@ -1,0 +1,65 @@
+//! The diagnosis where the model's own error decides.
+
+use super::parts::{Given, Parts};
+use crate::fit::Fit;
+use crate::held_out::{Division, JUDGEMENT_STEP};
+use crate::location::{LOCATION_STEP, Location, located};
+use crate::modal::{Known, ModalJudgement};
+use crate::search::Search;
+use crate::settings::work::shares::OF_HELD_OUT;
+use jointscope_findings::{HeldOut, Verdict};
+
+/// The diagnosis where the model's own error decides. `on_lines` is what lines made of the recording: the
+/// fixture refitted, or a search.
+pub(super) fn by_modes(given: Given, on_lines: &Search, modal: &ModalJudgement) -> Parts {
+    let work = given.fitter.observation.work();
+    let (modal, search) = modal.predicted(given.fitter, on_lines);
+    let division = given.division.filter(|_| work.allows(JUDGEMENT_STEP));
+    let held_out = division.and_then(|division| {
+        work.within_rest(OF_HELD_OUT, || judged_on_held_out(given, division, on_lines, &modal, &search))
+    });
+    let locations = places_of_what_is_left(given, &modal, &search);
+    Parts {
+        verdict: modal.verdict,
+        findings: modal.findings(&search.candidates),
+        locations,
+        held_out,
+        search,
+        stated: Some(modal.stated.clone()),
+        model_error: Some(modal.errors),
+        baseline_error: None,
+        baseline: None,
+        tried: modal.tried(),
+    }
+}
+
+/// How well what modes tell of the recording without what is held out predicts that. `search` is what was
+/// found in the whole.
+fn judged_on_held_out(
+    given: Given,
+    division: &Division,
+    on_lines: &Search,
+    modal: &ModalJudgement,
+    search: &Search,
+) -> Option<HeldOut> {
+    let fitter = given.fitter;
+    fitter.watch.stage("comparing by modes without what is held out");
+    let blind = fitter.on(&division.seen);
+    // Of what names nothing, only the refitted fixture is judged.
+    let named = search.repaired.hypothesis.effect_count() > 0;
+    let names = if named { modal.known(&fitter.settings.modal) } else { Known::default() };
+    let judged =
+        ModalJudgement::of(&blind, &on_lines.nominal.hypothesis, &on_lines.candidates, Some(&names))?;
+    let (_, blind) = judged.predicted(&blind, on_lines);
+    division.judge(&blind, search, fitter.observation)
+}
+
+/// The places of what modes do not explain.
+fn places_of_what_is_left(given: Given, modal: &ModalJudgement, search: &Search) -> Vec<Location> {
+    let observation = given.fitter.observation;
+    if modal.verdict != Verdict::Unexplained || !observation.work().allows(LOCATION_STEP) {
+        return Vec::new();
+    }
+    let refitted = Fit::at(modal.stated[0].clone(), observation);
+    located(*given.fitter, &search.nominal.hypothesis, refitted.as_ref().unwrap_or(&search.refitted))
+}
