@@ -29,73 +29,155 @@ pub fn descend<P: LeastSquares>(
     nearby: Option<P::Derivatives>,
     settings: &Settings,
 ) -> Option<Descent<P::Point, P::Derivatives>> {
-    let mut point = start;
-    let mut objective = problem.objective(&point, &problem.weights(&point));
-    let within_reach = |objective: f64| {
-        settings.exact_at_end
-            && settings.limit.is_some_and(|limit| objective - limit.objective <= limit.reach)
-    };
-    let mut precision =
-        if within_reach(objective) { DerivativePrecision::Exact } else { DerivativePrecision::Rough };
-    let mut fresh = nearby.is_none() || settings.fresh;
-    let mut derivatives = match nearby {
-        Some(nearby) => nearby,
-        None => problem.derivatives(&point, precision)?,
-    };
-    let mut damping = settings.damping.initial;
-    let mut least_gain = 0.0_f64;
-    let mut valleys = 0;
-    let mut taken = 1;
-    let mut pace = Pace::default();
+    let mut course = Course::begin(problem, start, nearby, settings)?;
     for _ in 0..settings.steps {
-        let at = At::of(problem, &point, &derivatives, objective, fresh);
-        let (before, promised) = (at.objective, at.promised.unwrap_or(0.0));
-        if let Some(limit) = settings.limit.filter(|_| fresh)
-            && (limit.is_out_of_reach(before, promised) || pace.is_too_slow(before, &limit))
-        {
-            objective = before;
+        if !course.goes_on_after_step()? {
             break;
         }
-        let (next, followed) = at.next(problem, &mut damping, settings);
-        let stepped = next.is_some();
-        if let Some((next, after)) = next {
-            (point, objective) = (next, after);
-        } else {
-            objective = before;
-        }
-        let gain = before - objective;
-        let needed = settings.convergence.needed(before);
-        if gain < needed && (fresh || (settings.trust_old && stepped)) {
-            let valley = promised > VALLEY * needed && gain > 0.0 && valleys < settings.valleys;
-            if valley {
-                valleys += 1;
-                damping = settings.damping.least;
-            } else if precision == DerivativePrecision::Exact || !settings.exact_at_end {
-                break;
-            }
-            precision = DerivativePrecision::Exact;
-            derivatives = problem.derivatives(&point, precision)?;
-            (fresh, least_gain) = (true, 0.0);
-            continue;
-        }
-        let slow = followed || gain < least_gain.max(needed) || settings.reuse.is_none();
-        if fresh {
-            least_gain = settings.reuse.map_or(0.0, |share| (share * gain).max(needed));
-        }
-        if slow {
-            if taken == settings.derivatives {
-                break;
-            }
-            taken += 1;
-            if within_reach(objective) {
-                precision = DerivativePrecision::Exact;
-            }
-            derivatives = problem.derivatives(&point, precision)?;
-            least_gain = 0.0;
-        }
-        fresh = slow;
     }
+    let Course { point, derivatives, objective, .. } = course;
     Some(Descent { point, derivatives, objective })
+}
+
+/// A descent under way.
+struct Course<'a, P: LeastSquares> {
+    problem: &'a P,
+    settings: &'a Settings,
+    point: P::Point,
+    /// With the last weights.
+    objective: f64,
+    derivatives: P::Derivatives,
+    precision: DerivativePrecision,
+    /// Whether the derivatives are those of the point.
+    fresh: bool,
+    /// How often derivatives were taken because steps with old ones gained too little.
+    taken: usize,
+    damping: f64,
+    /// What a step with old derivatives has to gain for these to serve once more.
+    least_gain: f64,
+    /// Undamped steps tried where damped ones had converged.
+    valleys: usize,
+    pace: Pace,
+}
+
+/// What a step did.
+struct Step {
+    /// The objective before it, with the weights that it was taken with.
+    before: f64,
+    /// What an undamped one should have gained.
+    promised: f64,
+    gain: f64,
+    /// Whether the point moved.
+    moved: bool,
+    /// Whether it went along a curved valley.
+    followed: bool,
+}
+
+impl<'a, P: LeastSquares> Course<'a, P> {
+    /// `None` where the start has no derivatives.
+    fn begin(
+        problem: &'a P,
+        point: P::Point,
+        nearby: Option<P::Derivatives>,
+        settings: &'a Settings,
+    ) -> Option<Self> {
+        let objective = problem.objective(&point, &problem.weights(&point));
+        let exact = is_within_reach(objective, settings);
+        let precision = if exact { DerivativePrecision::Exact } else { DerivativePrecision::Rough };
+        let fresh = nearby.is_none() || settings.fresh;
+        let derivatives = match nearby {
+            Some(nearby) => nearby,
+            None => problem.derivatives(&point, precision)?,
+        };
+        Some(Course {
+            problem,
+            settings,
+            point,
+            objective,
+            derivatives,
+            precision,
+            fresh,
+            taken: 1,
+            damping: settings.damping.initial,
+            least_gain: 0.0,
+            valleys: 0,
+            pace: Pace::default(),
+        })
+    }
+
+    /// Takes a step; whether another one is to follow. `None` where the point reached has no derivatives.
+    fn goes_on_after_step(&mut self) -> Option<bool> {
+        let Some(step) = self.step() else { return Some(false) };
+        let needed = self.settings.convergence.needed(step.before);
+        let is_converged = step.gain < needed && (self.fresh || (self.settings.trust_old && step.moved));
+        match is_converged {
+            true => self.goes_on_where_converged(&step, needed),
+            false => self.goes_on_with_derivatives(&step, needed),
+        }
+    }
+
+    /// The next step; `None` where the descent is given up.
+    fn step(&mut self) -> Option<Step> {
+        let at = At::of(self.problem, &self.point, &self.derivatives, self.objective, self.fresh);
+        let (before, promised) = (at.objective, at.promised.unwrap_or(0.0));
+        if let Some(limit) = self.settings.limit.filter(|_| self.fresh)
+            && (limit.is_out_of_reach(before, promised) || self.pace.is_too_slow(before, &limit))
+        {
+            self.objective = before;
+            return None;
+        }
+        let (next, followed) = at.next(self.problem, &mut self.damping, self.settings);
+        let moved = next.is_some();
+        match next {
+            Some((next, after)) => (self.point, self.objective) = (next, after),
+            None => self.objective = before,
+        }
+        Some(Step { before, promised, gain: before - self.objective, moved, followed })
+    }
+
+    /// Ends where exact derivatives promise no more, or goes on with these.
+    fn goes_on_where_converged(&mut self, step: &Step, needed: f64) -> Option<bool> {
+        let is_valley =
+            step.promised > VALLEY * needed && step.gain > 0.0 && self.valleys < self.settings.valleys;
+        if is_valley {
+            self.valleys += 1;
+            self.damping = self.settings.damping.least;
+        } else if self.precision == DerivativePrecision::Exact || !self.settings.exact_at_end {
+            return Some(false);
+        }
+        self.precision = DerivativePrecision::Exact;
+        self.derivatives = self.problem.derivatives(&self.point, self.precision)?;
+        (self.fresh, self.least_gain) = (true, 0.0);
+        Some(true)
+    }
+
+    /// Goes on with the derivatives at hand, or with new ones where a step gained too little, as long as any
+    /// may be taken.
+    fn goes_on_with_derivatives(&mut self, step: &Step, needed: f64) -> Option<bool> {
+        let Settings { reuse, derivatives: most, .. } = *self.settings;
+        let is_slow = step.followed || step.gain < self.least_gain.max(needed) || reuse.is_none();
+        if self.fresh {
+            self.least_gain = reuse.map_or(0.0, |share| (share * step.gain).max(needed));
+        }
+        if is_slow {
+            if self.taken == most {
+                return Some(false);
+            }
+            self.taken += 1;
+            if is_within_reach(self.objective, self.settings) {
+                self.precision = DerivativePrecision::Exact;
+            }
+            self.derivatives = self.problem.derivatives(&self.point, self.precision)?;
+            self.least_gain = 0.0;
+        }
+        self.fresh = is_slow;
+        Some(true)
+    }
+}
+
+/// Whether an objective comes so near to its limit that exact derivatives matter.
+fn is_within_reach(objective: f64, settings: &Settings) -> bool {
+    settings.exact_at_end && settings.limit.is_some_and(|limit| objective - limit.objective <= limit.reach)
 }
 
 /// Where a descent stands, before its next step.
