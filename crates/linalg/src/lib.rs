@@ -46,6 +46,8 @@ mod sparse_cholesky;
 #[cfg(feature = "sparse")]
 mod sparse_inertia;
 #[cfg(feature = "sparse")]
+mod sparse_lanczos;
+#[cfg(feature = "sparse")]
 mod sparse_modes;
 #[cfg(feature = "sparse")]
 mod sparse_space;

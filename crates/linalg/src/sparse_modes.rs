@@ -5,8 +5,8 @@
 
 use crate::sparse::SparseError;
 use crate::sparse_inertia::count_below;
-use crate::sparse_space::{Random, Space};
-use crate::{EigenError, SparseCholesky, SparseSymmetric, dot, generalized_symmetric_eigen};
+use crate::sparse_lanczos::{BLOCK, Lanczos, RitzPair};
+use crate::{EigenError, SparseCholesky, SparseSymmetric};
 use std::f64::consts::TAU;
 
 /// How many modes are to be found.
@@ -62,10 +62,6 @@ fn missing(found: usize, counted: usize, below: f64) -> SparseError {
     SparseError::Missing { found, counted, hz: below.max(0.0).sqrt() / TAU }
 }
 
-/// Vectors that are found at a time; of modes of higher multiplicity some are missed at first, and found
-/// after the count.
-const BLOCK: usize = 4;
-
 /// The Krylov space ends at so many vectors for each mode that is wanted, and some.
 const VECTORS_A_MODE: usize = 8;
 
@@ -76,9 +72,6 @@ const MOST_MODES: usize = 400;
 /// Modes known to lie below the wanted frequency from which on all of them are counted before the search goes
 /// on: of moduli a million times too small every vector is such a mode.
 const MANY_MODES: usize = 64;
-
-/// Residual of a Ritz pair of (K + sM)⁻¹M, relative to its value, at which it counts as found.
-const CONVERGED: f64 = 1e-10;
 
 /// Largest residual of a mode that is handed out: half of it is the most that its frequency can be off by.
 const RESIDUAL_ALLOWED: f64 = 1e-4;
@@ -116,101 +109,80 @@ pub fn lowest_modes(
     wanted: ModesWanted,
     mut progress: impl FnMut(usize, usize),
 ) -> Result<SparseModes, SparseError> {
-    let factor = SparseCholesky::of(&stiffness.plus(shift, mass)?)?;
     let order = mass.order();
-    let mut space = Space { mass, held: Vec::new(), vectors: Vec::new() };
-    for motion in rigid {
-        let (vector, image) = space.normalised(motion.clone(), 0.0).ok_or(EigenError::MassNotPositive)?;
-        space.held.push((vector, image));
-    }
     let at_least = wanted.at_least.min(order.saturating_sub(rigid.len()));
-    let mut random = Random::new();
-    let mut block: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
-    for _ in 0..BLOCK.min(order - rigid.len().min(order)) {
-        space.start(&mut random, &factor, &mut block);
-    }
-    // Projection of (K + sM)⁻¹M on the space, columns one by one as the space grows.
-    let mut columns: Vec<Vec<f64>> = Vec::new();
+    let up_to = wanted.up_to;
+    let mut search = Lanczos::begin(stiffness, mass, rigid, shift)?;
     let mut census: Option<Census> = None;
-    let most = MOST_MODES.max(2 * at_least);
-    let mut are_counted = false;
+    let mut bound = ModeBound { most: MOST_MODES.max(2 * at_least), up_to, is_counted: false };
     loop {
-        let size = space.vectors.len();
-        // Residuals of Ritz pairs are made of what the images of the newest vectors have outside the space.
-        let outside = space.images(&factor, &block, &mut columns);
-        let mut next = Vec::with_capacity(block.len());
-        let ritz = ritz_pairs(&columns, size)?;
-        // One product with M for each of them, and none for each pair.
-        let gram = products_by_mass(space.mass, &outside);
-        let converged = converged(&ritz, &gram, size - block.len());
-        let eigenvalues: Vec<f64> = ritz[..converged].iter().map(|pair| 1.0 / pair.value - shift).collect();
+        let projection = search.projected()?;
+        let converged = projection.converged;
+        let eigenvalues: Vec<f64> =
+            projection.ritz[..converged].iter().map(|pair| pair.eigenvalue(shift)).collect();
         progress(converged.min(at_least), at_least);
-        if size + rigid.len() >= order {
+        if search.size() + rigid.len() >= order {
             // The space is all there is: nothing can be missing.
-            let all = (converged == size).then_some((converged, f64::INFINITY));
-            let (count, below) = complete_set(&eigenvalues, wanted.up_to, at_least)
-                .or(all)
-                .ok_or(EigenError::NoConvergence)?;
-            return modes(space, stiffness, &ritz[..count], factor, shift, below);
+            let all = (converged == search.size()).then_some((converged, f64::INFINITY));
+            let (count, below) =
+                complete_set(&eigenvalues, up_to, at_least).or(all).ok_or(EigenError::NoConvergence)?;
+            return modes(search, &projection.ritz[..count], below);
         }
         let complete = match &census {
-            None => complete_set(&eigenvalues, wanted.up_to, at_least),
+            None => complete_set(&eigenvalues, up_to, at_least),
             // The count holds for the shift where it was taken.
             Some(census) => Some((below(&eigenvalues, census.shift), census.shift)),
         };
+        let mut fresh = 0;
         if let Some((count, below)) = complete {
             let census = match &mut census {
                 Some(census) => census,
-                None => census.insert(Census::at(stiffness, mass, below, &factor)?),
+                None => census.insert(Census::at(stiffness, mass, below, &search.factor)?),
             };
             let found = rigid.len() + count;
             if found == census.counted {
-                return modes(space, stiffness, &ritz[..count], factor, shift, below);
+                return modes(search, &projection.ritz[..count], below);
             }
-            let fresh = census.fresh_vectors(found, size, block.len(), below)?;
-            (0..fresh).for_each(|_| space.start(&mut random, &factor, &mut next));
+            fresh = census.fresh_vectors(found, search.size(), search.block.len(), below)?;
         } else {
-            // Ritz values lie above the eigenvalues: there are at least so many modes.
-            let known = ritz.iter().filter(|pair| 1.0 / pair.value - shift <= wanted.up_to).count();
-            let mut below = known;
-            if known >= MANY_MODES && !are_counted {
-                are_counted = true;
-                // Where the shift is too close to an eigenvalue for a count, the search tells.
-                let all = count_below(stiffness, mass, wanted.up_to, &factor.elimination).unwrap_or(0);
-                below = all.saturating_sub(rigid.len()).max(known);
-            }
-            if below > most {
-                return Err(SparseError::TooMany { most, hz: wanted.up_to.max(0.0).sqrt() / TAU });
-            }
-            if size >= VECTORS_A_MODE * known.max(converged).max(at_least) + 60 {
+            let known = bound.checked(&search, &projection.ritz)?;
+            if search.size() >= VECTORS_A_MODE * known.max(converged).max(at_least) + 60 {
                 return Err(EigenError::NoConvergence.into());
             }
         }
-        for (index, rest) in outside.into_iter().enumerate() {
-            // Where the block has run dry in a direction, another one.
-            let vector = space.normalised_of(rest, gram[index][index], 1e-10);
-            let Some(vector) = vector.or_else(|| space.normalised(random.vector(order), 1e-8)) else {
-                continue;
-            };
-            space.vectors.push(vector.clone());
-            next.push(vector);
-        }
-        if next.is_empty() {
-            return Err(EigenError::NoConvergence.into());
-        }
-        block = next;
+        search.extend(projection, fresh)?;
     }
 }
 
-/// How many of the first Ritz pairs have converged: their residuals are made of what the newest vectors, from
-/// `first_new` on, have outside the space, of which `gram` holds the products.
-fn converged(ritz: &[RitzPair], gram: &[Vec<f64>], first_new: usize) -> usize {
-    let residual_of = |pair: &RitzPair| {
-        let weights = &pair.vector[first_new..];
-        let of_row = |(row, weight): (&Vec<f64>, &f64)| weight * dot(row, weights);
-        gram.iter().zip(weights).map(of_row).sum::<f64>().max(0.0).sqrt() / pair.value
-    };
-    ritz.iter().take_while(|pair| residual_of(pair) <= CONVERGED).count()
+/// The bound on how many modes a search may have to find.
+struct ModeBound {
+    most: usize,
+    up_to: f64,
+    /// Whether all modes below the wanted frequency were counted already.
+    is_counted: bool,
+}
+
+impl ModeBound {
+    /// How many modes are known to lie below the wanted frequency.
+    ///
+    /// # Errors
+    /// More than may be looked for.
+    fn checked(&mut self, search: &Lanczos, ritz: &[RitzPair]) -> Result<usize, SparseError> {
+        // Ritz values lie above the eigenvalues: there are at least so many modes.
+        let known = ritz.iter().filter(|pair| pair.eigenvalue(search.shift) <= self.up_to).count();
+        let mut below = known;
+        if known >= MANY_MODES && !self.is_counted {
+            self.is_counted = true;
+            // Where the shift is too close to an eigenvalue for a count, the search tells.
+            let (stiffness, mass) = (search.stiffness, search.space.mass);
+            let all = count_below(stiffness, mass, self.up_to, &search.factor.elimination).unwrap_or(0);
+            below = all.saturating_sub(search.space.held.len()).max(known);
+        }
+        match below > self.most {
+            true => Err(SparseError::TooMany { most: self.most, hz: self.up_to.max(0.0).sqrt() / TAU }),
+            false => Ok(known),
+        }
+    }
 }
 
 /// The count of eigenvalues below a shift, and what was done because of it.
@@ -274,46 +246,9 @@ fn complete_set(eigenvalues: &[f64], up_to: f64, at_least: usize) -> Option<(usi
     })
 }
 
-/// Products vᵢᵀ M vⱼ of all vectors, row by row.
-fn products_by_mass(mass: &SparseSymmetric, vectors: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let (blocks, rest) = vectors.as_chunks::<BLOCK>();
-    let images = blocks.iter().flat_map(|block| mass.multiply_each(block.each_ref().map(Vec::as_slice)));
-    let images = images.chain(rest.iter().map(|vector| mass.multiply(vector)));
-    images.map(|image| vectors.iter().map(|other| dot(&image, other)).collect()).collect()
-}
-
-struct RitzPair {
-    value: f64,
-    vector: Vec<f64>,
-}
-
-/// Eigenpairs of the projected operator, largest value (lowest mode) first.
-fn ritz_pairs(columns: &[Vec<f64>], size: usize) -> Result<Vec<RitzPair>, EigenError> {
-    let mut projected = vec![0.0; size * size];
-    let mut identity = vec![0.0; size * size];
-    for (j, column) in columns.iter().enumerate() {
-        identity[j * size + j] = 1.0;
-        for (i, value) in column.iter().enumerate() {
-            // A column knows the space up to its own block; what lies below is its mirror image.
-            projected[i * size + j] = *value;
-            projected[j * size + i] = *value;
-        }
-    }
-    let basis = generalized_symmetric_eigen(size, &identity, &projected)?;
-    let pairs =
-        (0..size).rev().map(|r| RitzPair { value: basis.eigenvalues()[r], vector: basis.shape(r).to_vec() });
-    Ok(pairs.filter(|pair| pair.value > 0.0).collect())
-}
-
 /// Modes of the assembly from Ritz pairs, their residuals looked at.
-fn modes(
-    space: Space,
-    stiffness: &SparseSymmetric,
-    pairs: &[RitzPair],
-    factor: SparseCholesky,
-    shift: f64,
-    complete_below: f64,
-) -> Result<SparseModes, SparseError> {
+fn modes(search: Lanczos, pairs: &[RitzPair], complete_below: f64) -> Result<SparseModes, SparseError> {
+    let Lanczos { stiffness, shift, factor, space, .. } = search;
     let order = space.mass.order();
     let (mut eigenvalues, mut shapes) = (Vec::new(), Vec::new());
     let mut residual = 0.0_f64;
@@ -322,7 +257,7 @@ fn modes(
         for ((vector, _), weight) in space.vectors.iter().zip(&pair.vector) {
             shape.iter_mut().zip(vector).for_each(|(s, v)| *s += weight * v);
         }
-        let eigenvalue = 1.0 / pair.value - shift;
+        let eigenvalue = pair.eigenvalue(shift);
         // K φ as it stands, carried through the factor: what is left of Kφ − λMφ as a motion. Unsmoothed it
         // is mostly the rounding of stiffness that cancels, which grows with the finest element and says
         // nothing of the mode.
