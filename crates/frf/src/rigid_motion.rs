@@ -121,67 +121,97 @@ impl BlockFrf {
 /// # Errors
 /// See [`RigidMotionError`]. Single lines that cannot be solved are masked instead.
 pub fn fit_rigid_motion(frfs: &FrfSet, layout: &BlockLayout) -> Result<BlockFrf, RigidMotionError> {
-    let unknown: Vec<(usize, usize)> = (0..1 + usize::from(layout.rotate[0]))
-        .flat_map(|i| (0..1 + usize::from(layout.rotate[1])).map(move |j| (i, j)))
-        .collect();
+    let unknown = elements(layout.rotate);
     check_geometry(layout, unknown.len())?;
-    let lines = frfs.lines().clone();
-    let count = lines.len();
+    let count = frfs.lines().len();
     let mut result = BlockFrf {
         values: vec![Matrix2::zero(); count],
         covariance: frfs.variance(0).map(|_| vec![[[0.0; 4]; 4]; count]),
         masked: Vec::new(),
         surplus: layout.channels.len() - unknown.len(),
         residual: vec![0.0; count],
-        lines: lines.clone(),
+        lines: frfs.lines().clone(),
     };
-    let coefficients = |(_, response, reference): &(usize, BlockChannel, BlockChannel)| -> Vec<f64> {
-        let (out, input) = (response.row(), reference.row());
-        unknown.iter().map(|&(i, j)| out[i] * input[j]).collect()
-    };
-    let design: Vec<Vec<f64>> = layout.channels.iter().map(coefficients).collect();
-    let mut problem = LeastSquares::new();
-    let mut solution = vec![Complex64::ZERO; unknown.len()];
+    let mut fit = LineFit::new(frfs, layout, unknown);
     for line in 0..count {
-        let Some(factor) = frfs.form().factor_to(FrfForm::Receptance, lines.omega(line)) else {
-            result.masked.push((line, MaskReason::ZeroFrequency));
-            continue;
-        };
-        problem.begin(unknown.len());
-        let mut size = 0.0;
-        for ((index, ..), coefficients) in layout.channels.iter().zip(&design) {
-            let value = frfs.values(*index)[line] * factor;
-            let weight = weight(frfs, (*index, line), factor.norm_sqr());
-            size += weight * value.norm_sqr();
-            problem.equation(coefficients, value, weight);
-        }
-        let sum = match problem.solve(&mut solution) {
-            Ok(sum) => sum,
-            Err(error) => {
-                let reason = match error {
-                    LeastSquaresError::TooFewEquations { .. } => MaskReason::NoCoherence,
-                    _ => MaskReason::Undetermined,
-                };
-                result.masked.push((line, reason));
-                continue;
-            }
-        };
-        for (&(i, j), value) in unknown.iter().zip(&solution) {
-            result.values[line].0[i][j] = *value;
-        }
-        if let Some(covariance) = &mut result.covariance {
-            for (a, &(i, j)) in unknown.iter().enumerate() {
-                for (b, &(k, l)) in unknown.iter().enumerate() {
-                    covariance[line][2 * i + j][2 * k + l] = problem.covariance(a, b);
-                }
-            }
-            // The noise of a complex value has two degrees of freedom, each with half of its variance.
-            result.residual[line] = 2.0 * sum;
-        } else if size > 0.0 {
-            result.residual[line] = sum / size;
+        match fit.solve(line) {
+            Ok(left) => fit.write(line, left, &mut result),
+            Err(reason) => result.masked.push((line, reason)),
         }
     }
     Ok(result)
+}
+
+/// The elements of H that are to be found: row and column.
+fn elements([responding, loaded]: [bool; 2]) -> Vec<(usize, usize)> {
+    (0..1 + usize::from(responding)).flat_map(|i| (0..1 + usize::from(loaded)).map(move |j| (i, j))).collect()
+}
+
+/// The least squares problem of one line after the other.
+struct LineFit<'a> {
+    frfs: &'a FrfSet,
+    layout: &'a BlockLayout,
+    unknown: Vec<(usize, usize)>,
+    /// By FRF, what each unknown element contributes to it.
+    design: Vec<Vec<f64>>,
+    problem: LeastSquares,
+    solution: Vec<Complex64>,
+}
+
+/// Weighted sums of squares on a line.
+struct Left {
+    residual: f64,
+    values: f64,
+}
+
+impl<'a> LineFit<'a> {
+    fn new(frfs: &'a FrfSet, layout: &'a BlockLayout, unknown: Vec<(usize, usize)>) -> Self {
+        let coefficients = |(_, response, reference): &(usize, BlockChannel, BlockChannel)| -> Vec<f64> {
+            let (out, input) = (response.row(), reference.row());
+            unknown.iter().map(|&(i, j)| out[i] * input[j]).collect()
+        };
+        let design = layout.channels.iter().map(coefficients).collect();
+        let solution = vec![Complex64::ZERO; unknown.len()];
+        LineFit { frfs, layout, unknown, design, problem: LeastSquares::new(), solution }
+    }
+
+    /// Solves a line, or says why it cannot be used.
+    fn solve(&mut self, line: usize) -> Result<Left, MaskReason> {
+        let omega = self.frfs.lines().omega(line);
+        let factor = self.frfs.form().factor_to(FrfForm::Receptance, omega);
+        let factor = factor.ok_or(MaskReason::ZeroFrequency)?;
+        self.problem.begin(self.unknown.len());
+        let mut size = 0.0;
+        for ((index, ..), coefficients) in self.layout.channels.iter().zip(&self.design) {
+            let value = self.frfs.values(*index)[line] * factor;
+            let weight = weight(self.frfs, (*index, line), factor.norm_sqr());
+            size += weight * value.norm_sqr();
+            self.problem.equation(coefficients, value, weight);
+        }
+        match self.problem.solve(&mut self.solution) {
+            Ok(residual) => Ok(Left { residual, values: size }),
+            Err(LeastSquaresError::TooFewEquations { .. }) => Err(MaskReason::NoCoherence),
+            Err(_) => Err(MaskReason::Undetermined),
+        }
+    }
+
+    /// Writes the line solved last.
+    fn write(&self, line: usize, left: Left, result: &mut BlockFrf) {
+        for (&(i, j), value) in self.unknown.iter().zip(&self.solution) {
+            result.values[line].0[i][j] = *value;
+        }
+        if let Some(covariance) = &mut result.covariance {
+            for (a, &(i, j)) in self.unknown.iter().enumerate() {
+                for (b, &(k, l)) in self.unknown.iter().enumerate() {
+                    covariance[line][2 * i + j][2 * k + l] = self.problem.covariance(a, b);
+                }
+            }
+            // The noise of a complex value has two degrees of freedom, each with half of its variance.
+            result.residual[line] = 2.0 * left.residual;
+        } else if left.values > 0.0 {
+            result.residual[line] = left.residual / left.values;
+        }
+    }
 }
 
 /// Weight of an FRF's receptance on a line, `scale` times the variance being that of the receptance; zero
