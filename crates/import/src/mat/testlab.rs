@@ -17,68 +17,104 @@ pub(super) fn is_block(value: &Value) -> bool {
 
 /// Reads a block: one function a column, or a row where only the rows are as long as its lines.
 pub(super) fn read(variable: &str, block: &Value, sink: &mut Sink) -> Result<(), ImportError> {
-    let wrong =
-        |problem: &str| ImportError::Variable { variable: variable.to_owned(), problem: problem.to_owned() };
-    let Some(Value::Numbers { dims, re, im }) = block.field("y_values.values") else {
-        return Err(wrong("`y_values.values` holds no numbers; export it again"));
-    };
-    let lines = lines(block).ok_or_else(|| {
-        wrong("`x_values` holds no start_value, increment and number_of_values; export it again")
-    })?;
-    let Some(by_column) = by_column(dims, lines.len()).filter(|_| !re.is_empty()) else {
-        let size = dims.iter().map(usize::to_string).collect::<Vec<_>>().join("×");
-        let problem = format!(
-            "{size} values do not make functions of {} lines (x_values.number_of_values); export it again",
-            lines.len()
-        );
-        return Err(ImportError::Variable { variable: variable.to_owned(), problem });
-    };
-    let turned = |values: &[f64]| transposed(values, re.len() / lines.len());
-    let (re, im) = match by_column {
-        true => (re.clone(), im.clone()),
-        false => (turned(re), im.as_deref().map(turned)),
-    };
-    let text = |path: &str| block.field(path).map(Value::texts).unwrap_or_default();
-    let x_unit = text("x_values.quantity.label").into_iter().next().unwrap_or_default();
-    if matches!(x_unit.trim(), "s" | "ms") {
-        return Err(wrong("holds time histories; export them as UFF (dataset 58)"));
-    }
-    let unit = text("y_values.quantity.label").into_iter().next().unwrap_or_default();
-    let factor = factor(block, &unit)
+    let functions = Functions::of(block)
         .map_err(|problem| ImportError::Variable { variable: variable.to_owned(), problem })?;
-    let names = text("function_record.name");
-    let columns = re.len() / lines.len();
-    for at in 0..columns {
-        let range = at * lines.len()..(at + 1) * lines.len();
-        let key = if columns == 1 { variable.to_owned() } else { format!("{variable}({})", at + 1) };
+    let names = texts(block, "function_record.name");
+    let count = functions.count();
+    for at in 0..count {
+        let key = if count == 1 { variable.to_owned() } else { format!("{variable}({})", at + 1) };
         let name = names.get(at).cloned().unwrap_or_default();
-        let imaginary = im.iter().flat_map(|im| &im[range.clone()]);
-        if re[range.clone()].iter().chain(imaginary).any(|value| !value.is_finite()) {
-            let problem = "a value is not finite; mask or remove it before export".into();
-            return Err(ImportError::Variable { variable: key, problem });
+        let dataset = functions.dataset(at, (&key, &name), sink)?;
+        sink.file.datasets.push(dataset);
+    }
+    Ok(())
+}
+
+/// The functions of a block, one after the other.
+struct Functions {
+    lines: Vec<f64>,
+    re: Vec<f64>,
+    im: Option<Vec<f64>>,
+    x_unit: String,
+    unit: String,
+    /// What values have to be multiplied by to be in their unit.
+    factor: f64,
+}
+
+impl Functions {
+    /// The functions; else what is wrong with the block.
+    fn of(block: &Value) -> Result<Self, String> {
+        let Some(Value::Numbers { dims, re, im }) = block.field("y_values.values") else {
+            return Err("`y_values.values` holds no numbers; export it again".to_owned());
+        };
+        let lines = lines(block).ok_or_else(|| {
+            "`x_values` holds no start_value, increment and number_of_values; export it again".to_owned()
+        })?;
+        let Some(by_column) = by_column(dims, lines.len()).filter(|_| !re.is_empty()) else {
+            let size = dims.iter().map(usize::to_string).collect::<Vec<_>>().join("×");
+            return Err(format!(
+                "{size} values do not make functions of {} lines (x_values.number_of_values); export it again",
+                lines.len()
+            ));
+        };
+        let turned = |values: &[f64]| transposed(values, re.len() / lines.len());
+        let (re, im) = match by_column {
+            true => (re.clone(), im.clone()),
+            false => (turned(re), im.as_deref().map(turned)),
+        };
+        let x_unit = first_text(block, "x_values.quantity.label");
+        if matches!(x_unit.trim(), "s" | "ms") {
+            return Err("holds time histories; export them as UFF (dataset 58)".to_owned());
         }
-        let pair = match (channels(&key, &name, columns == 1, sink), &im) {
+        let unit = first_text(block, "y_values.quantity.label");
+        let factor = factor(block, &unit)?;
+        Ok(Functions { lines, re, im, x_unit, unit, factor })
+    }
+
+    fn count(&self) -> usize {
+        self.re.len() / self.lines.len()
+    }
+
+    /// One of the functions by its index, its key and its name.
+    fn dataset(
+        &self,
+        at: usize,
+        (key, name): (&str, &str),
+        sink: &mut Sink,
+    ) -> Result<Dataset58, ImportError> {
+        let range = at * self.lines.len()..(at + 1) * self.lines.len();
+        let (re, im) = (&self.re[range.clone()], self.im.as_ref().map(|im| &im[range]));
+        if re.iter().chain(im.into_iter().flatten()).any(|value| !value.is_finite()) {
+            let problem = "a value is not finite; mask or remove it before export".into();
+            return Err(ImportError::Variable { variable: key.to_owned(), problem });
+        }
+        let pair = match (channels(key, name, self.count() == 1, sink), im) {
             (Some(pair), _) => pair,
             // What is no FRF is told of, and nobody asks for its nodes.
             (None, None) => ChannelPair { response: Node::default(), reference: Node::default() },
             (None, Some(_)) => {
-                return Err(ImportError::Pair { variable: key, problem: PairError(name) });
+                let problem = PairError(name.to_owned());
+                return Err(ImportError::Pair { variable: key.to_owned(), problem });
             }
         };
-        let title = if name.is_empty() { &key } else { &name };
-        let dataset = match &im {
+        let title = if name.is_empty() { key } else { name };
+        let (axis, factor) = ((self.lines.as_slice(), self.x_unit.as_str()), self.factor);
+        Ok(match im {
             Some(im) => {
-                let values = re[range.clone()].iter().zip(&im[range]);
-                let values = values.map(|(re, im)| Complex64::new(re * factor, im * factor)).collect();
-                function(&pair, (&lines, &x_unit), &unit, title, Values::Frf(values))
+                let values = re.iter().zip(im).map(|(re, im)| Complex64::new(re * factor, im * factor));
+                function(&pair, axis, &self.unit, title, Values::Frf(values.collect()))
             }
-            None => {
-                real(&pair, (&lines, &x_unit), &unit, title, re[range].iter().map(|v| v * factor).collect())
-            }
-        };
-        sink.file.datasets.push(dataset);
+            None => real(&pair, axis, &self.unit, title, re.iter().map(|v| v * factor).collect()),
+        })
     }
-    Ok(())
+}
+
+fn texts(block: &Value, path: &str) -> Vec<String> {
+    block.field(path).map(Value::texts).unwrap_or_default()
+}
+
+fn first_text(block: &Value, path: &str) -> String {
+    texts(block, path).into_iter().next().unwrap_or_default()
 }
 
 /// What values have to be multiplied by to be in the unit of their label; else what is wrong.
