@@ -176,59 +176,32 @@ impl Comparison {
             return Err(ComparisonError::OneSpecimen(name.clone()));
         }
         let relation = common_relation(&joints)?;
-        let compared = Compared::of(&relation, &joints);
-        if let Some(joint) = joints.iter().find(|joint| !compared.is_had_by(joint)) {
-            let other = joints.iter().find(|joint| !Compared::AllFrfs.is_had_by(joint));
-            return Err(ComparisonError::NothingInCommon {
-                found_at_once: joint.name.clone(),
-                other: other.map_or(String::new(), |other| other.name.clone()),
-            });
-        }
+        let compared = common_estimate(&relation, &joints)?;
         let law = LawOfAll::of(&joints).filter(|_| compared == Compared::AllFrfs);
         let given = joints;
         let joints = law.as_ref().map_or_else(|| given.clone(), |law| law.placed(&given));
         let numbers = numbers(&joints, compared);
-        let choices = choices(&given, &joints, law.as_ref());
+        let estimates: Vec<FiledEstimate> = joints.iter().map(|joint| stated(joint, compared)).collect();
         let by_law = match compared {
-            Compared::AllFrfs => posteriors(&choices, &numbers, options.independent),
-            _ => {
-                let estimates: Vec<FiledEstimate> =
-                    joints.iter().map(|joint| stated(joint, compared)).collect();
-                vec![(1.0, Together::independent(&estimates, &numbers))]
+            Compared::AllFrfs => {
+                posteriors(&choices(&given, &joints, law.as_ref()), &numbers, options.independent)
             }
+            _ => vec![(1.0, Together::independent(&estimates, &numbers))],
         };
         let together = with_spread(&by_law);
-        let estimates: Vec<FiledEstimate> = joints.iter().map(|joint| stated(joint, compared)).collect();
         let cautions = Caution::of(&joints, &estimates, (compared, &numbers), &together);
-        let all: Vec<usize> = (0..joints.len()).collect();
-        let name = |joint: usize| joints[joint].name.as_str();
-        let pair = |(a, b): (usize, usize)| {
-            let is_of_fits = compared == Compared::AllFrfs;
-            let two = || [given[a].clone(), given[b].clone()];
-            let tested = is_of_fits.then(|| of_two(&two(), &numbers, options.independent)).flatten();
-            let pair = Pair::of(&by_law, &numbers, (a, b), [name(a), name(b)], tested.as_ref());
-            let is_untested = is_of_fits && pair.equality.is_none();
-            let laws_differ = is_untested.then(|| LawsDiffer::of(&given[a], &given[b])).flatten();
-            Pair { laws_differ, ..pair }
-        };
-        let pairs: Vec<Pair> =
-            all.iter().flat_map(|&a| (a + 1..joints.len()).map(move |b| (a, b))).map(pair).collect();
-        let rankings = numbers.iter().enumerate().map(|(n, number)| {
-            let values: Vec<f64> = all.iter().map(|&joint| together.value(joint, n)).collect();
-            let covariance: Vec<f64> = all
-                .iter()
-                .flat_map(|&a| all.iter().map(move |&b| (a, b)))
-                .map(|(a, b)| together.covariance((a, n), (b, n)))
-                .collect();
-            let ranking = Ranking::joint(&values, &covariance);
-            let has_deviations = !estimates.iter().any(|estimate| number.has_no_deviation(estimate));
-            ElementRanking { kind: number.kind, element: number.element, ranking, has_deviations }
+        let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
+        let pairs = every_two(joints.len()).map(|(a, b)| {
+            let tested = (compared == Compared::AllFrfs).then_some([&given[a], &given[b]]);
+            pair(&by_law, &numbers, ((a, b), [names[a], names[b]]), tested, options.independent)
         });
+        let pairs: Vec<Pair> = pairs.collect();
+        let rankings = (0..numbers.len()).map(|n| ranking(&together, &estimates, &numbers, n)).collect();
         let specimens = options.specimens.iter().map(|(kind, places)| {
-            let named: Vec<(usize, &str)> = places.iter().map(|&joint| (joint, name(joint))).collect();
+            let named: Vec<(usize, &str)> = places.iter().map(|&joint| (joint, names[joint])).collect();
             Specimens::of(kind, &together, &numbers, &named)
         });
-        let (rankings, specimens) = (rankings.collect(), specimens.collect());
+        let specimens = specimens.collect();
         let equality = Equality::of_pairs(&pairs);
         Ok(Comparison {
             models: ModelRatios::all(&joints, &by_law, &numbers),
@@ -303,6 +276,19 @@ fn common_relation(joints: &[Decomposed]) -> Result<String, ComparisonError> {
     }
 }
 
+/// The first of the estimates that all joints have.
+fn common_estimate(relation: &str, joints: &[Decomposed]) -> Result<Compared, ComparisonError> {
+    let compared = Compared::of(relation, joints);
+    if let Some(joint) = joints.iter().find(|joint| !compared.is_had_by(joint)) {
+        let other = joints.iter().find(|joint| !Compared::AllFrfs.is_had_by(joint));
+        return Err(ComparisonError::NothingInCommon {
+            found_at_once: joint.name.clone(),
+            other: other.map_or(String::new(), |other| other.name.clone()),
+        });
+    }
+    Ok(compared)
+}
+
 /// The estimate that stands for a joint, as its file states it.
 fn stated(joint: &Decomposed, compared: Compared) -> FiledEstimate {
     let found = match compared {
@@ -329,6 +315,44 @@ fn with_spread(by_law: &ByLaw) -> Together {
     let mut together = by_law[0].1.clone();
     together.spread(&by_law[1..]);
     together
+}
+
+/// Every two of so many joints, in the order given.
+fn every_two(joints: usize) -> impl Iterator<Item = (usize, usize)> {
+    (0..joints).flat_map(move |a| (a + 1..joints).map(move |b| (a, b)))
+}
+
+/// Two joints with their names; whether they are the same is tested by their files, `tested`, where fits to
+/// all FRFs are compared.
+fn pair(
+    by_law: &ByLaw,
+    numbers: &[Number],
+    (places, names): ((usize, usize), [&str; 2]),
+    tested: Option<[&Decomposed; 2]>,
+    independent: bool,
+) -> Pair {
+    let of_two = tested.and_then(|two| of_two(&two.map(Decomposed::clone), numbers, independent));
+    let pair = Pair::of(by_law, numbers, places, names, of_two.as_ref());
+    let untested = tested.filter(|_| pair.equality.is_none());
+    Pair { laws_differ: untested.and_then(|[a, b]| LawsDiffer::of(a, b)), ..pair }
+}
+
+/// The order of all joints by the number of index `n`.
+fn ranking(together: &Together, estimates: &[FiledEstimate], numbers: &[Number], n: usize) -> ElementRanking {
+    let all = 0..estimates.len();
+    let values: Vec<f64> = all.clone().map(|joint| together.value(joint, n)).collect();
+    let covariance: Vec<f64> = all
+        .clone()
+        .flat_map(|a| all.clone().map(move |b| (a, b)))
+        .map(|(a, b)| together.covariance((a, n), (b, n)))
+        .collect();
+    let number = &numbers[n];
+    ElementRanking {
+        kind: number.kind,
+        element: number.element,
+        ranking: Ranking::joint(&values, &covariance),
+        has_deviations: !estimates.iter().any(|estimate| number.has_no_deviation(estimate)),
+    }
 }
 
 #[cfg(test)]
