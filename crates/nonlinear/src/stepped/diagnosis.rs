@@ -96,23 +96,9 @@ impl SteppedDiagnosis {
         options: &NonlinearOptions,
     ) -> Result<Self, SteppedError> {
         check(levels)?;
-        // Noise is read from all lines, before most are cut away.
-        let with_noise = |level: &SteppedLevel| SteppedLevel { frfs: noisy(&level.frfs), ..level.clone() };
-        let levels: Vec<SteppedLevel> = levels.iter().map(with_noise).collect();
-        let (levels, band) = about_the_resonance(&levels, options.band)?;
-        let no_resonance = |level: &SteppedLevel| SteppedError::NoResonance(level.held.to_string());
-        let resonances = levels
-            .iter()
-            .map(|level| resonance(level).ok_or_else(|| no_resonance(level)))
-            .collect::<Result<Vec<_>, _>>()?;
-        let measured: Vec<&SteppedLevel> = levels.iter().collect();
-        let found = locations(fixture, &measured)?.into_iter();
-        let linear = |location| {
-            let problem = Problem::new(location, &measured)?;
-            let linear = fitted(&problem, &[])?;
-            Some((problem, linear))
-        };
-        let linear: Vec<(Problem, Fitted)> = found.filter_map(linear).collect();
+        let (levels, band) = about_the_resonance(&with_noise(levels), options.band)?;
+        let resonances = resonances(&levels)?;
+        let linear = one_stiffness_for_all(fixture, &levels)?;
         let closest = linear.iter().min_by(|a, b| a.0.floor.total_cmp(&b.0.floor));
         let change =
             closest.map(|(problem, linear)| changed(problem, linear)).ok_or(SteppedError::NoJoint)?;
@@ -123,47 +109,56 @@ impl SteppedDiagnosis {
         let best = judged.iter().min_by(|a, b| a.best().nrmse.total_cmp(&b.best().nrmse));
         let best = best.ok_or(SteppedError::NoJoint)?;
         let named = if changes { named_law(&judged) } else { None };
-        let verdict =
-            verdict(changes, named.as_ref().map(|n| n.count == levels.len() && n.share >= LEAVES_NOTHING));
-        let Judged { problem, linear, .. } = named.as_ref().map_or(best, |n| &judged[n.index]);
-        let repaired = named.as_ref().map_or(linear, |n| &n.fit);
-        let holds = named.as_ref().map_or(0, |n| n.count);
+        let named = named.as_ref();
+        let Judged { problem, linear, .. } = named.map_or(best, |n| &judged[n.index]);
+        let repaired = named.map_or(linear, |n| &n.fit);
         let models = [&Change::default(), &linear.change, &repaired.change];
-        let of_levels = problem.levels.iter().zip(resonances.iter().copied()).enumerate();
-        let row = |(index, (level, resonance))| of_level(problem, (level, resonance), models, index < holds);
-        let rows: Vec<LevelResult> = of_levels.map(row).collect();
-        let mean =
-            |k: usize| (rows.iter().map(|r| r.nrmse[k].powi(2)).sum::<f64>() / rows.len() as f64).sqrt();
-        let mut tried: Vec<TriedForm> = judged.iter().flat_map(Judged::tried).collect();
-        tried.sort_by(|a, b| a.nrmse.total_cmp(&b.nrmse));
+        let holds = named.map_or(0, |n| n.count);
+        let rows = of_levels(problem, &resonances, models, holds);
         let omega = TAU * resonances[0].frequency.0;
         let (refitted, unplaced) = placed(fixture, problem, &linear.change, omega);
-        let repaired_fixture = match &named {
-            None => refitted.clone(),
-            Some(n) => with_laws(fixture, problem, &n.fit.change, omega),
-        };
-        let by_noise = problem.by_noise();
-        let chi2_per_dof = models.map(|change| {
-            let fitted = if *change == Change::default() { 0 } else { change.parameters().len() };
-            by_noise.as_ref()?.chi2_per_dof(change, fitted)
-        });
+        let with_laws = named.map(|n| with_laws(fixture, problem, &n.fit.change, omega));
         let by_fixture = (fixture, options.exact);
         Ok(SteppedDiagnosis {
-            verdict,
+            verdict: verdict(changes, named.map(|n| n.count == levels.len() && n.share >= LEAVES_NOTHING)),
             place: (problem.joint.clone(), problem.dof),
-            nrmse: [0, 1, 2, 3].map(mean),
+            nrmse: over_levels(&rows),
             levels: rows,
             change,
-            tried,
-            findings: named.as_ref().map_or_else(Vec::new, |n| n.findings(&judged, by_fixture)),
+            tried: tried(&judged),
+            findings: named.map_or_else(Vec::new, |n| n.findings(&judged, by_fixture)),
             holds,
-            held_out: named.as_ref().and_then(|n| n.held_out()),
+            held_out: named.and_then(|n| n.held_out()),
             band,
-            chi2_per_dof,
-            fixtures: [refitted, repaired_fixture],
+            chi2_per_dof: chi2_per_dof(problem, models),
+            fixtures: [refitted.clone(), with_laws.unwrap_or(refitted)],
             unplaced,
         })
     }
+}
+
+/// The levels with their noise, read from all lines before most are cut away.
+fn with_noise(levels: &[SteppedLevel]) -> Vec<SteppedLevel> {
+    levels.iter().map(|level| SteppedLevel { frfs: noisy(&level.frfs), ..level.clone() }).collect()
+}
+
+fn resonances(levels: &[SteppedLevel]) -> Result<Vec<Resonance>, SteppedError> {
+    let no_resonance = |level: &SteppedLevel| SteppedError::NoResonance(level.held.to_string());
+    levels.iter().map(|level| resonance(level).ok_or_else(|| no_resonance(level))).collect()
+}
+
+/// By location, the fit of one complex stiffness for all levels.
+fn one_stiffness_for_all(
+    fixture: &Fixture,
+    levels: &[SteppedLevel],
+) -> Result<Vec<(Problem, Fitted)>, SteppedError> {
+    let measured: Vec<&SteppedLevel> = levels.iter().collect();
+    let linear = |location| {
+        let problem = Problem::new(location, &measured)?;
+        let linear = fitted(&problem, &[])?;
+        Some((problem, linear))
+    };
+    Ok(locations(fixture, &measured)?.into_iter().filter_map(linear).collect())
 }
 
 fn verdict(changes: bool, explains_all: Option<bool>) -> Verdict {
@@ -173,6 +168,17 @@ fn verdict(changes: bool, explains_all: Option<bool>) -> Verdict {
         Some(true) => Verdict::Explained,
         Some(false) => Verdict::PartlyExplained,
     }
+}
+
+/// What each level shows; the laws found hold at so many, from the lowest.
+fn of_levels(
+    problem: &Problem,
+    resonances: &[Resonance],
+    models: [&Change; 3],
+    holds: usize,
+) -> Vec<LevelResult> {
+    let levels = problem.levels.iter().zip(resonances.iter().copied()).enumerate();
+    levels.map(|(index, of_one)| of_level(problem, of_one, models, index < holds)).collect()
 }
 
 /// What one level shows, and how far the three models are from it.
@@ -194,6 +200,28 @@ fn of_level(
         nrmse: [nominal, refitted, repaired, problem.own_error(level)],
         explained,
     }
+}
+
+/// Root mean square of the levels' errors, by model.
+fn over_levels(levels: &[LevelResult]) -> [f64; 4] {
+    let squares = |k: usize| levels.iter().map(|level| level.nrmse[k].powi(2)).sum::<f64>();
+    [0, 1, 2, 3].map(|k| (squares(k) / levels.len() as f64).sqrt())
+}
+
+/// χ² per degree of freedom that the models leave, where the noise is known.
+fn chi2_per_dof(problem: &Problem, models: [&Change; 3]) -> [Option<f64>; 3] {
+    let by_noise = problem.by_noise();
+    models.map(|change| {
+        let fitted = if *change == Change::default() { 0 } else { change.parameters().len() };
+        by_noise.as_ref()?.chi2_per_dof(change, fitted)
+    })
+}
+
+/// Everything tried at all locations, the best first.
+fn tried(judged: &[Judged]) -> Vec<TriedForm> {
+    let mut tried: Vec<TriedForm> = judged.iter().flat_map(Judged::tried).collect();
+    tried.sort_by(|a, b| a.nrmse.total_cmp(&b.nrmse));
+    tried
 }
 
 /// Refuses levels from which nothing follows.
