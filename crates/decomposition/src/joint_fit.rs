@@ -9,6 +9,7 @@
 //! mass-proportional damping, all other losses being the joint's.
 
 mod admissible;
+mod coupled;
 mod evidence;
 mod found;
 mod law;

@@ -1,4 +1,4 @@
-//! FRFs of the fixture without the joints that are looked for, and what these make of them.
+//! FRFs of the fixture without the joints that are looked for.
 //!
 //! Each joint acts on its own d_j = u_to − R_j·u_from. With all d_j one below the other, G of the fixture
 //! without the joints and Z = diag(Z_j),
@@ -8,14 +8,12 @@
 //! whatever the joints, G stays; it does not matter whether they form a chain or loops. Without them the
 //! fixture falls into pieces, of which a quantity moves but the one that it belongs to.
 
-use super::law::{MOST, Placed};
 use super::recorded::Recorded;
 use super::setup::Setup;
 use crate::sides::with_effects_of;
 use jointscope_beam::{Matrix4, mass_of_ends};
 use jointscope_fixture::Fixture;
-use jointscope_linalg::{LuWorkspace, Matrix2};
-use jointscope_lumped::{Instrument, Lanes, Lines, MeasuringChain, Model, Station};
+use jointscope_lumped::{Instrument, MeasuringChain, Model, Station};
 use num_complex::Complex64;
 use std::array::from_fn;
 use std::sync::Arc;
@@ -31,18 +29,18 @@ pub(super) struct Uncoupled {
     pieces: Vec<Arc<Piece>>,
     chain: MeasuringChain,
     /// Recorded accelerance per receptance, by FRF.
-    factors: Arc<Vec<Complex64>>,
+    pub(super) factors: Arc<Vec<Complex64>>,
     /// Coordinates of all d_j, two a joint; with those of the first joint's mass.
-    order: usize,
-    width: usize,
+    pub(super) order: usize,
+    pub(super) width: usize,
     /// Between channels, by FRF.
-    between: Vec<Complex64>,
+    pub(super) between: Vec<Complex64>,
     /// From loads on d to the responses, row-major.
-    from: Vec<Complex64>,
+    pub(super) from: Vec<Complex64>,
     /// From the references to d, row-major.
-    to: Vec<Complex64>,
+    pub(super) to: Vec<Complex64>,
     /// G_dd, row-major.
-    at: Vec<Complex64>,
+    pub(super) at: Vec<Complex64>,
 }
 
 /// Receptances of bodies that hold together without the joints.
@@ -185,147 +183,6 @@ impl Uncoupled {
             }
         }
     }
-
-    /// What is recorded with joints of these laws, FRF after FRF; its derivatives by the coordinates of laws
-    /// (these or others that take their places), one law's after the other's, over `columns`, if wanted.
-    ///
-    /// `None` where a line has no finite response.
-    pub(super) fn coupled(
-        &self,
-        recorded: &Recorded,
-        laws: &[Placed],
-        columns: Option<Columns>,
-    ) -> Option<Vec<Complex64>> {
-        let mut values = vec![Complex64::ZERO; self.factors.len()];
-        let lines = Coupled { uncoupled: self, recorded, laws, columns, values: &mut values };
-        match self.order {
-            2 => pulp::Arch::new().dispatch(lines),
-            4 => lines.solved::<4>()?,
-            6 => lines.solved::<6>()?,
-            8 => lines.solved::<8>()?,
-            10 => lines.solved::<10>()?,
-            12 => lines.solved::<12>()?,
-            14 => lines.solved::<14>()?,
-            _ => lines.solved::<{ 2 * MOST_JOINTS }>()?,
-        }
-        values.iter().all(|value| value.is_finite()).then_some(values)
-    }
-}
-
-/// Laws whose coordinates derivatives are wanted by, and the columns to write them to.
-pub(super) type Columns<'a> = (&'a [Placed<'a>], &'a mut [Vec<Complex64>]);
-
-/// Joints on the fixture without them.
-struct Coupled<'a> {
-    uncoupled: &'a Uncoupled,
-    recorded: &'a Recorded,
-    laws: &'a [Placed<'a>],
-    columns: Option<Columns<'a>>,
-    values: &'a mut [Complex64],
-}
-
-/// One joint: several lines at once.
-impl pulp::WithSimd for Coupled<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        // Where the matrix is singular, values are not finite.
-        self.on_lines::<Lanes, 2>(|[[a, b], [c, d]]| Some(Matrix2::new(a, b, c, d).inverse_unchecked().0));
-    }
-}
-
-impl Coupled<'_> {
-    /// Several joints: line by line.
-    fn solved<const ORDER: usize>(self) -> Option<()> {
-        let mut lu = LuWorkspace::new();
-        self.on_lines::<Complex64, ORDER>(|matrix| {
-            lu.factorize(ORDER, |to| to.copy_from_slice(matrix.as_flattened())).ok()?;
-            let mut inverse = identity();
-            lu.solve_columns_in_place(inverse.as_flattened_mut(), ORDER);
-            Some(inverse)
-        })
-    }
-
-    /// `ORDER`, the number of coordinates, is one of the compiler's: loops over so few cost three times as
-    /// much where it is not.
-    #[inline(always)]
-    fn on_lines<T: Lines, const ORDER: usize>(
-        self,
-        mut inverse: impl FnMut([[T; ORDER]; ORDER]) -> Option<[[T; ORDER]; ORDER]>,
-    ) -> Option<()> {
-        let Coupled { uncoupled, recorded, laws, mut columns, values } = self;
-        let (n, width, inputs) = (recorded.s.len(), uncoupled.width, recorded.references.len());
-        let mut slots = [T::ZERO; MOST];
-        let none = [T::ZERO; ORDER];
-        let (mut rows, mut forces) = (vec![none; recorded.responses.len()], vec![none; inputs]);
-        let mut motions = forces.clone();
-        let mut stiffness = [Matrix2::<T>::zero(); MOST_JOINTS];
-        let mut factors = [[T::ZERO; 3]; MOST_JOINTS];
-        for first in (0..n).step_by(T::COUNT) {
-            let lines = first..(first + T::COUNT).min(n);
-            let entry = |of: &[Complex64], place: usize| T::of(&of[place * n + first..place * n + lines.end]);
-            let s = &recorded.s[lines.clone()];
-            stiffness.iter_mut().zip(laws).for_each(|(stiffness, law)| *stiffness = law.stiffness(s));
-            // An entry of Z times a column.
-            let loaded = |d: usize, column: &dyn Fn(usize) -> T| {
-                let (z, first) = (&stiffness[d / 2], d - d % 2);
-                z.at(d % 2, 0) * column(first) + z.at(d % 2, 1) * column(first + 1)
-            };
-            let at: [[T; ORDER]; ORDER] = from_fn(|d| from_fn(|e| entry(&uncoupled.at, d * width + e)));
-            let mut matrix: [[T; ORDER]; ORDER] = from_fn(|d| from_fn(|e| loaded(d, &|d| at[d][e])));
-            (0..ORDER).for_each(|d| matrix[d][d] = matrix[d][d] + T::ONE);
-            let inverse = inverse(matrix)?;
-            for (o, row) in rows.iter_mut().enumerate() {
-                let from: [T; ORDER] = from_fn(|d| entry(&uncoupled.from, o * width + d));
-                *row = from_fn(|e| sum::<T, ORDER>(|d| from[d] * inverse[d][e]));
-            }
-            for (i, (force, motion)) in forces.iter_mut().zip(&mut motions).enumerate() {
-                let to: [T; ORDER] = from_fn(|d| entry(&uncoupled.to, d * inputs + i));
-                *force = from_fn(|d| loaded(d, &|e| to[e]));
-                // Motions of d are for derivatives only.
-                if columns.is_some() {
-                    let through: [T; ORDER] = from_fn(|d| sum::<T, ORDER>(|e| inverse[d][e] * force[e]));
-                    *motion = from_fn(|d| to[d] - sum::<T, ORDER>(|e| through[e] * at[d][e]));
-                }
-            }
-            if let Some((laws, _)) = &columns {
-                factors.iter_mut().zip(*laws).for_each(|(factors, law)| *factors = law.factors(s));
-            }
-            for (frf, &(response, reference)) in recorded.channels.iter().enumerate() {
-                let place = frf * n + lines.start..frf * n + lines.end;
-                let (row, force) = (&rows[response], &forces[reference]);
-                let factor = entry(&uncoupled.factors, frf);
-                let value =
-                    factor * (entry(&uncoupled.between, frf) - sum::<T, ORDER>(|d| row[d] * force[d]));
-                value.write(&mut values[place.clone()]);
-                let Some((laws, columns)) = &mut columns else { continue };
-                let mut rest = &mut **columns;
-                let ends = row.chunks_exact(2).zip(motions[reference].chunks_exact(2));
-                for ((law, factors), (row, motion)) in laws.iter().zip(&factors).zip(ends) {
-                    let [a, b] = [-(factor * row[0]), -(factor * row[1])];
-                    let by = [a * motion[0], a * motion[1], b * motion[0], b * motion[1]];
-                    let (own, others) = rest.split_at_mut(law.count());
-                    let slots = &mut slots[..law.count()];
-                    law.chain(by, *factors, slots);
-                    own.iter_mut()
-                        .zip(&*slots)
-                        .for_each(|(column, slot)| slot.write(&mut column[place.clone()]));
-                    rest = others;
-                }
-            }
-        }
-        Some(())
-    }
-}
-
-#[inline(always)]
-fn sum<T: Lines, const N: usize>(term: impl Fn(usize) -> T) -> T {
-    (1..N).fold(term(0), |sum, n| sum + term(n))
-}
-
-fn identity<const N: usize>() -> [[Complex64; N]; N] {
-    from_fn(|d| from_fn(|e| if d == e { Complex64::ONE } else { Complex64::ZERO }))
 }
 
 impl Piece {
