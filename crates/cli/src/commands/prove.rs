@@ -37,63 +37,112 @@ pub(super) fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
     if let Some(wanted) = arguments.plan {
         return plans(arguments, wanted as usize);
     }
-    let mut concealed = Concealed::of(arguments)?;
-    let digest = concealed.truths.digest().to_owned();
-    tell(&format!("truths sealed, SHA-256 {digest}"));
+    let concealed = Concealed::of(arguments)?;
+    tell(&format!("truths sealed, SHA-256 {}", concealed.truths.digest()));
     if let Some(directory) = &arguments.output {
         write_seal(directory, &concealed)?;
     }
-    let threads = arguments.workers();
-    let answers = diagnosed(arguments, &concealed, threads)?;
-    let baselines = baselines(&concealed, threads);
+    let answered = Answered::to(&concealed, arguments)?;
     if let Some(directory) = &arguments.output {
         // On disk before the truths are opened.
-        Outputs::one(directory.join("answers.json"), &answers.to_value())?;
-        Outputs::one(directory.join("baselines.json"), &json!(baselines))?;
+        answered.write(directory)?;
     }
-    let truths = concealed.truths.open(&answers).ok_or_else(|| Refusal::new("answers are missing"))?;
-    let mut truths: Opened = truths.into_iter().collect();
-    let own = std::mem::take(&mut truths.laboratory);
-    let cases = &concealed.cases;
-    let frfs = concealed.numbers.len() - cases.laboratory.len() - cases.struck.len();
-    let judged = judged(cases, own, &answers, threads);
-    let routes = routes((cases, frfs), truths, &answers, threads);
-    let timing = Timing::of(&answers.seconds());
+    let scored = Scored::of(concealed, &answered, arguments.workers())?;
+    let timing = Timing::of(&answered.answers.seconds());
     tell(&timing.to_string());
-    let score = Score::of(&judged);
-    let believed: Vec<_> = concealed.cases.laboratory.iter().map(|case| &case.believed).collect();
-    let methods = Methods::of(&judged, &believed, &baselines);
-    let mut value = json!(score);
-    value["methods"] = json!(methods);
-    value["plan"] = concealed.plan.take();
-    value["sealed_truths_sha256"] = digest.clone().into();
-    value["routes"] = json!(routes);
     if let Some(directory) = &arguments.output {
+        write_results(directory, scored.page(arguments)?, &scored.to_value(), &timing)?;
+    }
+    if arguments.json {
+        return Ok(pretty(&scored.to_value()).trim_end().to_owned());
+    }
+    Ok(scored.to_text(arguments))
+}
+
+/// What was answered to concealed cases before their truths were opened.
+struct Answered {
+    answers: Replies,
+    baselines: Vec<Option<Baseline>>,
+}
+
+impl Answered {
+    fn to(concealed: &Concealed, arguments: &ProveArguments) -> Result<Self, Refusal> {
+        let threads = arguments.workers();
+        let answers = diagnosed(arguments, concealed, threads)?;
+        Ok(Answered { answers, baselines: baselines(concealed, threads) })
+    }
+
+    fn write(&self, directory: &Path) -> Result<(), Refusal> {
+        Outputs::one(directory.join("answers.json"), &self.answers.to_value())?;
+        Outputs::one(directory.join("baselines.json"), &json!(self.baselines))
+    }
+}
+
+/// Cases whose truths were opened, and the scores of the answers.
+struct Scored {
+    /// Which cases these are.
+    what: String,
+    plan: Value,
+    /// SHA-256 of the sealed truths.
+    digest: String,
+    judged: Vec<Judged>,
+    score: Score,
+    methods: Methods,
+    routes: RouteScores,
+}
+
+impl Scored {
+    /// Opens the truths and scores what was answered.
+    fn of(concealed: Concealed, answered: &Answered, threads: usize) -> Result<Self, Refusal> {
+        let Answered { answers, baselines } = answered;
+        let Concealed { cases, numbers, truths, what, plan, .. } = concealed;
+        let digest = truths.digest().to_owned();
+        let truths = truths.open(answers).ok_or_else(|| Refusal::new("answers are missing"))?;
+        let mut truths: Opened = truths.into_iter().collect();
+        let own = std::mem::take(&mut truths.laboratory);
+        let frfs = numbers.len() - cases.laboratory.len() - cases.struck.len();
+        let judged = judged(&cases, own, answers, threads);
+        let routes = routes((&cases, frfs), truths, answers, threads);
+        let believed: Vec<_> = cases.laboratory.iter().map(|case| &case.believed).collect();
+        let methods = Methods::of(&judged, &believed, baselines);
+        Ok(Scored { what, plan, digest, score: Score::of(&judged), judged, methods, routes })
+    }
+
+    fn to_value(&self) -> Value {
+        let mut value = json!(self.score);
+        value["methods"] = json!(self.methods);
+        value["plan"] = self.plan.clone();
+        value["sealed_truths_sha256"] = self.digest.clone().into();
+        value["routes"] = json!(self.routes);
+        value
+    }
+
+    fn page(&self, arguments: &ProveArguments) -> Result<String, Refusal> {
         let context = ProofContext {
             program: origin::program(),
             command: origin::command_line(),
-            cases: concealed.what.clone(),
-            sealed: digest.clone(),
+            cases: self.what.clone(),
+            sealed: self.digest.clone(),
             pages: !arguments.no_case_pages,
         };
-        let results = ProofResults { score: &score, methods: &methods, judged: &judged, routes: &routes };
-        let page = proof_page(&results, &context).map_err(Refusal::new)?;
-        write_results(directory, page, &value, &timing)?;
+        let Scored { judged, score, methods, routes, .. } = self;
+        proof_page(&ProofResults { score, methods, judged, routes }, &context).map_err(Refusal::new)
     }
-    if arguments.json {
-        return Ok(pretty(&value).trim_end().to_owned());
+
+    /// The table for a terminal.
+    fn to_text(&self, arguments: &ProveArguments) -> String {
+        let Scored { what, digest, judged, score, methods, routes, .. } = self;
+        let mut text = format!("{what}\ntruths sealed before the first answer, SHA-256 {digest}\n");
+        if !judged.is_empty() {
+            text.push_str(&format!("\n{score}\n{methods}"));
+        }
+        text.push_str(&routes.to_string());
+        text.extend(cases_asked_for(arguments, score, routes).map(|line| format!("\n{line}")));
+        if let Some(directory) = &arguments.output {
+            text.push_str(&format!("\n{}", directory.join("report.html").display()));
+        }
+        text.trim_end().to_owned()
     }
-    let what = &concealed.what;
-    let mut text = format!("{what}\ntruths sealed before the first answer, SHA-256 {digest}\n");
-    if !judged.is_empty() {
-        text.push_str(&format!("\n{score}\n{methods}"));
-    }
-    text.push_str(&routes.to_string());
-    text.extend(cases_asked_for(arguments, &score, &routes).map(|line| format!("\n{line}")));
-    if let Some(directory) = &arguments.output {
-        text.push_str(&format!("\n{}", directory.join("report.html").display()));
-    }
-    Ok(text.trim_end().to_owned())
 }
 
 /// The page of a proof, its score and its timing, written into a directory.
