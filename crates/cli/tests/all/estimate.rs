@@ -192,7 +192,7 @@ fn hits_that_are_no_good_are_refused_in_one_sentence() {
                 }
             })
         },
-        &["every hit is rejected: hits 1, 2, 3: the record starts when", "pre-trigger"],
+        &["every hit is rejected: hits 1, 2, 3, 4: the record starts when", "pre-trigger"],
     );
     bench.refused(
         &["estimate", "frf.uff", "-o", "out.uff"],
