@@ -217,7 +217,7 @@ impl Comparison {
             let enough = self.independent() * around.within_degrees >= FEWEST_WITHIN;
             let scatter = if enough { around.within / around.within_degrees } else { 1.0 };
             let times = scatter.max(1.0);
-            if enough && block.within_degrees > 0.0 {
+            if enough && block.within_degrees > 0.0 && scatter > 0.0 {
                 let own = block.within / block.within_degrees / scatter;
                 told.spread += (own - 1.0).powi(2) * block.within_degrees / 2.0;
                 told.blocks += 1.0;
