@@ -147,7 +147,7 @@ pub(crate) fn weighed(names: &[WeighedName], chi2_per_dof: f64, is_met: bool) ->
     if !is_met {
         return format!(
             "No name meets the further test: {} comes nearest and leaves χ² per degree of freedom of {}, so that something else differs between the tests, or was left out of both ({} for what no name covers). \
-             See whether the second fixture states the mass, its place, the supports and the damping of that state, and diagnose the second test by itself",
+             See whether the second fixture states the mass, its place, the supports and the damping of that state, and diagnose the second test by itself.",
             effect_name(&first.effect),
             three(chi2_per_dof),
             percent(left)
@@ -157,12 +157,12 @@ pub(crate) fn weighed(names: &[WeighedName], chi2_per_dof: f64, is_met: bool) ->
     let before = percent(first.before);
     if first.probability >= SURE {
         return format!(
-            "With both tests it is {is} ({}, after {before} without the further test)",
+            "With both tests it is {is} ({}, after {before} without the further test).",
             probability(first.probability)
         );
     }
     format!(
-        "The further test does not settle it: {is} has {} then, after {before} without it",
+        "The further test does not settle it: {is} has {} then, after {before} without it.",
         percent(first.probability)
     )
 }

@@ -286,7 +286,7 @@ fn weighed(
             100.0 * name.before
         )
     };
-    let lines = std::iter::once(format!("{}.", weighed.says))
+    let lines = std::iter::once(weighed.says.clone())
         .chain(weighed.names.iter().map(name))
         .chain(weighed.remarks.iter().map(|remark| format!("{remark}.")));
     written(arguments, &files, weighed_file(&weighed), page, &context, lines.collect())
