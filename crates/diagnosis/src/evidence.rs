@@ -6,7 +6,7 @@ use crate::observation::excess;
 use crate::penalty::parameter_penalty;
 use crate::settings::Settings;
 use crate::settings::evidence::strictly::{MOST_EXCESS, UNCERTAINTY_SHARE};
-use crate::settings::evidence::unlisted::LEAST_COST;
+use crate::settings::evidence::unlisted::MOST_UNLISTED;
 use crate::{Hypothesis, Observation};
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -37,7 +37,7 @@ fn unlisted(fitter: &Fitter, best: &Fit) -> f64 {
     let misfit = observation.excess(chi2_per_dof).max(0.0);
     let company = best.hypothesis.effect_count().saturating_sub(1) as f64;
     let cost = settings.evidence.unlisted - settings.evidence.company * company - misfit * misfit;
-    (-0.5 * cost.max(LEAST_COST)).exp()
+    (-0.5 * cost.max(-2.0 * MOST_UNLISTED)).exp()
 }
 
 /// The probabilities of hypotheses of these costs, of which `best` is one. They sum to less than one: the

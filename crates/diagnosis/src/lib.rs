@@ -107,6 +107,7 @@ pub use odd_record::OddRecord;
 pub use options::{DiagnosisError, DiagnosisOptions};
 pub use prediction::PredictionError;
 pub use search::Search;
+pub use settings::evidence::unlisted::MOST_UNLISTED;
 pub use settings::{
     EvidenceSettings, FitSettings, LawSettings, LocationSettings, ModalSettings, RankingSettings,
     SelectionSettings, Settings,

@@ -14,9 +14,9 @@ use crate::names::{Name, Names, Remaining, WeighedName, carried};
 use crate::plan::PlanOptions;
 use crate::planned_test::PlannedTest;
 use crate::says;
-use crate::settings::further::{MISFIT, MOST_UNLISTED};
+use crate::settings::further::MISFIT;
 use crate::settings::outcome::SURE;
-use jointscope_diagnosis::{Hypothesis, Linearisation, Observation, with_idle_points_exact};
+use jointscope_diagnosis::{Hypothesis, Linearisation, MOST_UNLISTED, Observation, with_idle_points_exact};
 use jointscope_fixture::Fixture;
 use jointscope_inference::{
     DerivativePrecision, LeastSquares, NormalEquations, Settings, descend, each, variance_inflation,
@@ -126,7 +126,7 @@ fn weighed(names: &Names, fits: &[(At, f64)], observation: &Observation) -> Weig
     all.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     Weighed {
         says: says::weighed(&all, chi2_per_dof, is_met),
-        remarks: says::remarks_of_two_tests(names.added),
+        remarks: names.added.then(says::added_names).into_iter().collect(),
         names: all,
         chi2_per_dof,
         is_met,

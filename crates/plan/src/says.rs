@@ -167,11 +167,6 @@ pub(crate) fn weighed(names: &[WeighedName], chi2_per_dof: f64, is_met: bool) ->
     )
 }
 
-/// What a reader of two tests should know besides.
-pub(crate) fn remarks_of_two_tests(added: bool) -> Vec<String> {
-    added.then(added_names).into_iter().collect()
-}
-
 /// Names that the present test cannot have, and another one can.
 pub(crate) fn added_names() -> String {
     "As long as the hammer strikes one point, the force of all references does what that reference does: it is a name too, as probable"

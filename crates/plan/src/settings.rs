@@ -60,9 +60,6 @@ pub(crate) mod names {
 pub(crate) mod further {
     /// Standard deviations that χ² per degree of freedom of the further test may be above one.
     pub(crate) const MISFIT: f64 = 4.0;
-    /// ln of the weight of physics that no name covers, against one for the best, at the most: as a diagnosis
-    /// has it.
-    pub(crate) const MOST_UNLISTED: f64 = 5.0;
 }
 
 /// What a measurement would do for a set of names.

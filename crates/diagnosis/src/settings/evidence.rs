@@ -3,9 +3,9 @@
 
 /// What no hypothesis covers.
 pub(crate) mod unlisted {
-    /// Cost of physics that none covers, at the least, above the best hypothesis': it then weighs e⁵ times as
-    /// much, and a worse fit makes no difference.
-    pub(crate) const LEAST_COST: f64 = -10.0;
+    /// ln of the weight of physics that none covers, against one for the best hypothesis, at the most: a worse
+    /// fit makes no difference then.
+    pub const MOST_UNLISTED: f64 = 5.0;
 }
 
 /// Fits that must not leave a tenth of the noise more. Where nothing but the FRFs' scatter tells the noise,

@@ -116,7 +116,7 @@ pub(crate) fn homogeneity(records: &[Record], highest_hz: f64) -> Homogeneity {
         let Some(first) = group.first() else { continue };
         let samples = group.iter().map(|r| r.hit.samples()).min().unwrap_or(0);
         let comparison = Comparison::new(samples, first.hit.interval(), highest_hz);
-        share = share.min(comparison.independent());
+        share = share.min(comparison.independent);
         let alike =
             |r: &&Record| (r.hit.interval() - first.hit.interval()).abs() < 1e-9 * first.hit.interval();
         for reading in &first.readings {
@@ -172,6 +172,8 @@ struct Signal<'a> {
 struct Comparison {
     windowed: Windowed,
     power: f64,
+    /// Share of the lines that are independent.
+    independent: f64,
     highest_hz: f64,
 }
 
@@ -180,13 +182,9 @@ impl Comparison {
         let decay = WINDOW / (samples as f64 * interval);
         let window = (0..samples).map(|i| (-decay * interval * i as f64).exp()).collect();
         let windowed = Windowed::new(window, interval);
-        Comparison { power: windowed.power(), windowed, highest_hz }
-    }
-
-    /// Share of the lines that are independent.
-    fn independent(&self) -> f64 {
-        let fourth: f64 = self.windowed.window.iter().map(|w| w.powi(4)).sum();
-        self.power * self.power / (self.windowed.window.len() as f64 * fourth)
+        let power = windowed.power();
+        let fourth: f64 = windowed.window.iter().map(|w| w.powi(4)).sum();
+        Comparison { power, independent: power * power / (samples as f64 * fourth), windowed, highest_hz }
     }
 
     fn signal<'a>(&self, record: &'a Record, column: usize) -> Signal<'a> {
@@ -209,12 +207,12 @@ impl Comparison {
             self.line(&used, line).unwrap_or_default()
         };
         let lines: Vec<Sums> = (2..count).take_while(within).map(of_line).collect();
-        let length = (INDEPENDENT_IN_BLOCK / self.independent()).ceil() as usize;
+        let length = (INDEPENDENT_IN_BLOCK / self.independent).ceil() as usize;
         let blocks: Vec<Sums> = lines.chunks(length).map(Sums::of).collect();
         for (index, block) in blocks.iter().enumerate() {
             let around = index.saturating_sub(BLOCKS_AROUND)..(index + BLOCKS_AROUND + 1).min(blocks.len());
             let around = Sums::of(&blocks[around]);
-            let enough = self.independent() * around.within_degrees >= FEWEST_WITHIN;
+            let enough = self.independent * around.within_degrees >= FEWEST_WITHIN;
             let scatter = if enough { around.within / around.within_degrees } else { 1.0 };
             let times = scatter.max(1.0);
             if enough && block.within_degrees > 0.0 && scatter > 0.0 {
