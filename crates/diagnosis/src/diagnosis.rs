@@ -17,7 +17,7 @@ use crate::usable::Usable;
 use crate::work::Work;
 use crate::{Baseline, Hypothesis, Observation, Watch};
 use jointscope_findings::{HeldOut, Verdict};
-use jointscope_fixture::Fixture;
+use jointscope_fixture::{EffectKind, Fixture};
 use jointscope_lumped::Assembly;
 use jointscope_spectra::FrfSet;
 use std::sync::Arc;
@@ -138,9 +138,8 @@ impl Diagnosis {
 
     /// The answer that the parts of a route make.
     fn of_parts(parts: Parts, observation: Observation, settings: &Settings) -> Self {
+        let stated = parts.models();
         let search = parts.search;
-        let models = || [&search.refitted, &search.repaired].map(|fit| fit.hypothesis.clone());
-        let stated = parts.stated.unwrap_or_else(models);
         Self {
             verdict: parts.verdict,
             refitted: chance(&observation, &search.refitted),
@@ -212,7 +211,9 @@ impl Diagnosis {
         settings: &Settings,
         diagnosed: impl Fn(Observation) -> Result<Self, DiagnosisError>,
     ) -> Result<Self, DiagnosisError> {
-        if !matches!(self.verdict, Verdict::Unexplained | Verdict::PartlyExplained) {
+        // With a sensor that loads the structure in some FRFs only, none has the poles that all share.
+        let is_loaded = self.findings.iter().any(|finding| finding.effect.kind == EffectKind::SensorMass);
+        if is_loaded || !matches!(self.verdict, Verdict::Unexplained | Verdict::PartlyExplained) {
             return Ok(self);
         }
         let nominal = &self.search.nominal.hypothesis;

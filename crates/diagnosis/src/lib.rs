@@ -60,6 +60,7 @@ mod linearisation;
 mod location;
 mod mismatch;
 mod modal;
+mod moved_sensor;
 mod named;
 mod observation;
 mod odd_record;

@@ -66,6 +66,7 @@ mod turns;
 mod uncertainty;
 
 pub(crate) use beside_lines::Explaining;
+pub(crate) use compared::fixture_by_modes;
 pub(crate) use features::{Features, recorded};
 pub(crate) use judgement::ModalJudgement;
 pub(crate) use known::Known;

@@ -157,6 +157,20 @@ impl Observation {
         Some(Observation { frfs, weight, level, ..self.clone() })
     }
 
+    /// The observation of FRFs that are so many `factors` times this one's values, each relatively as well
+    /// known as before.
+    pub(crate) fn times(&self, factors: &[Complex64]) -> Option<Self> {
+        let values = self.values().iter().zip(factors).map(|(value, factor)| value * factor).collect();
+        let mut frfs =
+            FrfSet::new(self.lines().clone(), FrfForm::Accelerance, self.pairs().to_vec(), values).ok()?;
+        (0..self.pairs().len()).for_each(|index| frfs.set_averages(index, self.frfs.averages(index)));
+        let scaled = |all: &[f64], power: i32| {
+            all.iter().zip(factors).map(|(value, factor)| value * factor.norm().powi(power)).collect()
+        };
+        let (weight, level) = (scaled(&self.weight, -2), scaled(&self.level, 2));
+        Some(Observation { frfs, weight, level, ..self.clone() })
+    }
+
     /// The same observation with so many times the variance of its noise.
     pub(crate) fn with_variance_times(&self, factor: f64) -> Self {
         let weight = self.weight.iter().map(|weight| weight / factor).collect();

@@ -13,6 +13,7 @@ use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::held_out::Division;
 use crate::modal::ModalJudgement;
+use crate::moved_sensor::MovedSensor;
 use crate::options::{DiagnosisError, DiagnosisOptions};
 use crate::search::Search;
 use crate::settings::work::shares::OF_DOUBTS;
@@ -23,6 +24,41 @@ use jointscope_findings::Verdict;
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_spectra::SpectraError;
 use parts::Given;
+
+/// A recording before its route is chosen.
+struct Ground {
+    without_effects: Search,
+    modal: Option<ModalJudgement>,
+}
+
+impl Ground {
+    /// The fixture refitted and compared by modes.
+    fn of(given: Given, refitted: Search) -> Self {
+        let fitter = given.fitter;
+        let without_effects = refitted.clone().with_wrong_quantities(fitter);
+        let modal = compared_by_modes(given, &without_effects);
+        // Modes lead to the nearest minimum where lines, peak beside peak, may end in another.
+        let without_effects = match &modal {
+            Some(modal) => Search { candidates: modal.candidates.clone(), ..without_effects }
+                .refitted_from(fitter, &modal.stated[0]),
+            None => refitted.refitted_widely(fitter).with_wrong_quantities(fitter),
+        };
+        Ground { without_effects, modal }
+    }
+
+    /// The diagnosis of a structure that no sensor loads in some FRFs only.
+    fn decided(&self, given: Given) -> Parts {
+        let modal = self.modal.as_ref();
+        let parts = routed(given, &self.without_effects, modal);
+        if let Some(wrong) = explained_by_wrong_quantity(given, &self.without_effects, &parts) {
+            return wrong;
+        }
+        match parts.verdict {
+            Verdict::Unexplained => as_located(given, self.without_effects.clone(), modal, parts),
+            _ => parts,
+        }
+    }
+}
 
 /// The diagnosis by the route that fits the recording.
 pub(crate) fn judged(
@@ -36,27 +72,56 @@ pub(crate) fn judged(
     if let Some(found) = refitted.explained_by_odd_record(fitter) {
         return Ok(from_found(given, refitted, found, None));
     }
-    let without_effects = refitted.clone().with_wrong_quantities(fitter);
-    let modal = compared_by_modes(given, &without_effects);
-    // Modes lead to the nearest minimum where lines, peak beside peak, may end in another.
-    let without_effects = match &modal {
-        Some(modal) => Search { candidates: modal.candidates.clone(), ..without_effects }
-            .refitted_from(fitter, &modal.stated[0]),
-        None => refitted.refitted_widely(fitter).with_wrong_quantities(fitter),
-    };
-    let modal = modal.as_ref();
-    let moved = modal.filter(|modal| modal.is_unexplained());
-    if let Some(found) = moved.and_then(|_| without_effects.explained_by_moved_sensor(fitter)) {
-        return Ok(from_found(given, without_effects, found, None));
+    if refitted.lacks_much(fitter, &refitted.refitted)
+        && let Some(sensor) = moved_sensor(fitter, &refitted)
+    {
+        return beside_sensor(given, options, refitted, &sensor);
     }
-    let parts = routed(given, &without_effects, modal);
-    if let Some(wrong) = explained_by_wrong_quantity(given, &without_effects, &parts) {
-        return Ok(wrong);
+    let ground = Ground::of(given, refitted);
+    let Ground { without_effects, modal } = &ground;
+    let moved = modal.as_ref().filter(|modal| modal.is_unexplained());
+    if let Some(found) = moved.and_then(|_| without_effects.explained_by_moved_sensor(fitter, None)) {
+        return Ok(from_found(given, ground.without_effects, found, None));
     }
-    Ok(match parts.verdict {
-        Verdict::Unexplained => as_located(given, without_effects, modal, parts),
-        _ => parts,
-    })
+    Ok(ground.decided(given))
+}
+
+/// The sensor that makes natural frequencies differ from response to response, if one does.
+fn moved_sensor(fitter: &Fitter, refitted: &Search) -> Option<MovedSensor> {
+    fitter.watch.stage("comparing natural frequencies from response to response");
+    MovedSensor::of(fitter.observation, &refitted.nominal.hypothesis, &refitted.candidates)
+}
+
+/// The diagnosis with a `sensor` that loads the structure in some FRFs only, so that the poles all of them
+/// share are of no structure: by lines where it explains them down to their noise, alone or beside what is
+/// found without it, else beside that.
+fn beside_sensor(
+    given: Given,
+    options: &DiagnosisOptions,
+    refitted: Search,
+    sensor: &MovedSensor,
+) -> Result<Parts, DiagnosisError> {
+    let Given { fitter, fixture, exact, .. } = given;
+    if let Some(found) = refitted.explained_by_moved_sensor(fitter, Some(&sensor.effect)) {
+        return Ok(from_found(given, refitted, found, None));
+    }
+    let unloaded =
+        sensor.taken_off(fitter.observation).ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
+    let division = Division::of(&unloaded, options)?;
+    let without = Given { fitter: &fitter.on(&unloaded), fixture, exact, division: division.as_ref() };
+    let ground = without.without_effects().ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
+    let without = Ground::of(without, ground).decided(without);
+    // What leaves little of the lines beside it is for them to find.
+    let both = without.search.repaired.hypothesis.with(sensor.effect.clone());
+    let slight = fitter.settings.modal.slight * fitter.observation.degrees() as f64;
+    if let Some(repaired) = fitter.local(&both, None, slight).filter(|fit| fit.objective < slight) {
+        let found = Search { repaired, ..refitted.clone() };
+        let parts = from_found(given, refitted.clone(), found, None);
+        if parts.verdict == Verdict::Explained {
+            return Ok(parts);
+        }
+    }
+    Ok(sensor.beside(fitter, (refitted, without), given.division))
 }
 
 /// The diagnosis by lines that sets out from what was found among few names.

@@ -13,7 +13,7 @@ use crate::ranking::Ranking;
 use crate::settings::Settings;
 use crate::together::as_one;
 use crate::{Hypothesis, Observation, Watch};
-use jointscope_fixture::{EffectKind, Fixture, Place};
+use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_spectra::FrfPair;
 
 /// The outcome of a search.
@@ -102,11 +102,19 @@ impl Search {
         self.explained_by(fitter, &odd_record(fitter.observation, &self.nominal)?, true)
     }
 
-    /// The fixture with one sensor's mass that goes from response to response, where that explains the lines
-    /// down to their noise: the poles that all FRFs share are of no structure then, and modes tell nothing.
-    pub(crate) fn explained_by_moved_sensor(&self, fitter: &Fitter) -> Option<Search> {
-        let is_moved = |c: &&Candidate| c.kind == EffectKind::SensorMass && c.place == Place::Responses;
-        self.explained_by(fitter, self.candidates.iter().find(is_moved)?, true)
+    /// The fixture with the sensor's mass that natural frequencies `tell` which differ from response to
+    /// response, else with that of one sensor that goes from response to response, where that explains the
+    /// lines down to their noise: the poles that all FRFs share are of no structure then, and modes tell
+    /// nothing.
+    pub(crate) fn explained_by_moved_sensor(&self, fitter: &Fitter, told: Option<&Effect>) -> Option<Search> {
+        let is_moved =
+            |name: &Candidate| name.kind == EffectKind::SensorMass && name.place == Place::Responses;
+        let is_named = |name: &&Candidate| told.map_or(is_moved(name), |sensor| name.names(sensor));
+        let mut name = self.candidates.iter().find(is_named)?.clone();
+        if let Some(sensor) = told {
+            name.starts = vec![vec![sensor.value(0)]];
+        }
+        self.explained_by(fitter, &name, true)
     }
 
     /// The fixture with this name alone, from each of its starts, where that explains the lines down to their

@@ -15,6 +15,7 @@
 //! | [`location`] | the map of places with no law assumed |
 //! | [`modal`] | fits to modes: priors, descents and their rounds, sizes of a model's error, walks along a ridge |
 //! | [`evidence`] | probabilities, and what counts as explained |
+//! | [`moved_sensor`] | a sensor that loads the structure where it is |
 //! | [`statements`] | what is said of a diagnosis: from when on a difference is worth a word |
 //! | [`work`] | what things cost, and what share of the work one step may take |
 //!
@@ -27,6 +28,7 @@ pub(crate) mod evidence;
 pub(crate) mod lines;
 pub(crate) mod location;
 pub(crate) mod modal;
+pub(crate) mod moved_sensor;
 pub(crate) mod statements;
 pub(crate) mod work;
 

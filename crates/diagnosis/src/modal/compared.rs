@@ -26,6 +26,17 @@ pub(crate) struct Before {
     pub modes: Vec<ModeChange>,
 }
 
+/// A fixture by itself, its quantities fitted to a recording's modes, and its error; `None` where there are no
+/// modes to compare.
+pub(crate) fn fixture_by_modes(fitter: &Fitter, nominal: &Hypothesis) -> Option<(Hypothesis, ModelError)> {
+    let Fitter { observation, settings, .. } = fitter;
+    let features = Features::of(observation, nominal, &settings.modal)?;
+    let problem = features.problem(observation.work());
+    let fit = problem.fitted(nominal, &priors(nominal, &[]))?;
+    let error = problem.error(&fit, settings.modal.adequate.0);
+    Some((fit.hypothesis, error))
+}
+
 impl ModalJudgement {
     /// Compares a fixture with a recording by modes; `None` where there are no modes to compare. Of a
     /// recording that lacks what is held out of another, those effects are tried that were `known` there.

@@ -47,6 +47,12 @@ pub(crate) struct Parts {
 }
 
 impl Parts {
+    /// What is said of the quantities of the refitted and the repaired model.
+    pub(crate) fn models(&self) -> [Hypothesis; 2] {
+        let models = || [&self.search.refitted, &self.search.repaired].map(|fit| fit.hypothesis.clone());
+        self.stated.clone().unwrap_or_else(models)
+    }
+
     /// The same on all FRFs of a recording of which a part was searched: models that were fitted to lines are
     /// fitted to all of them.
     pub(crate) fn on_all(mut self, fitter: &Fitter) -> Self {
