@@ -339,7 +339,7 @@ impl Default for ModalSettings {
             adequate: (2.0, 4.0),
             part: 0.5,
             most_left_where_incomplete: 0.1,
-            spoils: 2.0,
+            spoils: 1.6,
             exact: 5.0,
             free_fit_limit: 1.3,
             hopeless: 100.0,

@@ -89,6 +89,12 @@ impl ModelledTest {
         self.model.is_first_order()
     }
 
+    /// What gains, delays and filters of its channels make of each FRF at a frequency, rad/s.
+    pub fn signals(&self, omega: f64) -> Vec<Complex64> {
+        let s = self.chain.s(omega);
+        (0..self.chain.readings.len()).map(|index| self.chain.factor(index, omega) / (s * s)).collect()
+    }
+
     fn receptances(&self) -> Receptances<'_> {
         self.model.receptances_of(&self.stations.outputs, &self.stations.inputs, self.wanted.clone())
     }

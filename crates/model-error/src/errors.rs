@@ -8,7 +8,7 @@
 
 use crate::matching::Pairing;
 use crate::modelled::ModelledModes;
-use crate::recorded::RecordedModes;
+use crate::recorded::{Offsets, RecordedModes};
 use crate::settings::errors::{
     LEAST_SIZE, LEAST_TERM_SQUARED, USUAL_DAMPING, USUAL_FREQUENCY, USUAL_GAIN, USUAL_MASS_LINE,
     USUAL_QUADRATURE, USUAL_SHAPE, USUAL_UPPER_RESIDUAL,
@@ -343,12 +343,20 @@ impl SharedFeatures {
         }
         for &(r, m) in &pairing.pairs {
             let scale = recorded.modes[r].scale;
-            let with_leak =
-                modelled.modes[m].residues.iter().zip(&modelled.leaks).map(|(a, leaks)| a + leaks[r]);
-            model.extend(with_leak.flat_map(|a| [a.re / scale, a.im / scale]));
+            let residue = |frf: usize| {
+                let offset =
+                    recorded.offsets.as_ref().map(|own| own.residues[r][frf] * modelled.signals[m][frf]);
+                modelled.modes[m].residues[frf] + modelled.leaks[frf][r] + offset.unwrap_or_default()
+            };
+            model.extend((0..frfs).map(residue).flat_map(|a| [a.re / scale, a.im / scale]));
         }
         for frf in 0..frfs {
-            model.extend((0..2).map(|k| modelled.residual_terms[frf][k] / recorded.residual_scales[k]));
+            let term = |k: usize| {
+                let offset = |own: &Offsets| own.terms[frf][k] * modelled.signals_at_ends[k][frf].re;
+                let offset = recorded.offsets.as_ref().map(offset);
+                (modelled.residual_terms[frf][k] + offset.unwrap_or_default()) / recorded.residual_scales[k]
+            };
+            model.extend((0..2).map(term));
         }
         self.places.iter().zip(model).map(|(&place, model)| features[place] - model).collect()
     }

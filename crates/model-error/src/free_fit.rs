@@ -280,6 +280,7 @@ impl FreeFit {
             covariance,
             excess_residual_terms: self.terms >= TERMS.1,
             outline: Outline::of(recording, (&self.poles, self.inside), self.terms, mass_line)?,
+            offsets: None,
             surroundings: (self.poles[modes..].to_vec(), self.terms),
             modes: recorded,
         })

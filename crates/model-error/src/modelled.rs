@@ -44,6 +44,10 @@ pub struct ModelledModes {
     /// What a free fit with the recording's poles adds to the residue of each of them, FRF by FRF, as the
     /// residual terms cannot write all that the modes out of the band do.
     pub(crate) leaks: Vec<Vec<Complex64>>,
+    /// What gains, delays and filters of the channels make of each FRF at each mode, and at the lowest and the
+    /// highest line.
+    pub(crate) signals: Vec<Vec<Complex64>>,
+    pub(crate) signals_at_ends: [Vec<Complex64>; 2],
     /// By how much the last residual term lowers χ² of what the modes leave, over all FRFs and lines of the
     /// recording.
     last_term: f64,
@@ -134,7 +138,9 @@ impl ModelledModes {
             last_term += lowered;
         }
         last_term *= outline.recorded as f64 / lines.len() as f64;
-        Some(ModelledModes { modes, parts, residual_terms, leaks, last_term })
+        let signals = modes.iter().map(|mode| test.signals(mode.pole.omega)).collect();
+        let signals_at_ends = [recorded.band.0, recorded.band.1].map(|hz| test.signals(TAU * hz));
+        Some(ModelledModes { modes, parts, residual_terms, leaks, signals, signals_at_ends, last_term })
     }
 
     /// Whether a free fit of the model's own FRFs would take the last of the recording's residual terms, by

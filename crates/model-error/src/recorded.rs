@@ -19,6 +19,17 @@ pub struct RecordedMode {
     pub resolved: bool,
 }
 
+/// What a baseline's residues and residual terms are beyond those of the model that is calibrated on it, as
+/// channels without gains, delays and filters would have read them: what a channel makes of a structure's
+/// signal it makes of all of that signal, whatever the model knows of it.
+#[derive(Debug, Clone)]
+pub(crate) struct Offsets {
+    /// By mode and FRF; nothing of modes that the baseline does not show.
+    pub residues: Vec<Vec<Complex64>>,
+    /// Mass line and upper residual of each FRF.
+    pub terms: Vec<[f64; 2]>,
+}
+
 /// Modes and residual terms of a recording, with their covariance.
 #[derive(Debug, Clone)]
 pub struct RecordedModes {
@@ -47,6 +58,8 @@ pub struct RecordedModes {
     /// Whether residual terms were taken that neither noise nor the model asks for.
     pub(crate) excess_residual_terms: bool,
     pub(crate) outline: Outline,
+    /// What a calibrated model is off by, where these are compared with one.
+    pub(crate) offsets: Option<Offsets>,
     /// Poles outside the band, and number of residual terms of each FRF.
     pub(crate) surroundings: (Vec<Pole>, usize),
 }

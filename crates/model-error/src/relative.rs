@@ -2,12 +2,14 @@
 
 use crate::matching::Pairing;
 use crate::modelled::ModelledModes;
-use crate::recorded::RecordedModes;
+use crate::recorded::{Offsets, RecordedModes};
+use num_complex::Complex64;
 
 impl RecordedModes {
-    /// These modes as a model that is calibrated on a `baseline` should have them: what the baseline's modes
-    /// differ by from those of the model (`modelled`, paired by `pairing`) is taken off, and its covariance
-    /// added. Modes that the baseline does not show are left out.
+    /// These modes as a model that is calibrated on a `baseline` should have them: what the baseline's poles
+    /// differ by from those of the model (`modelled`, paired by `pairing`) is taken off, what its residues
+    /// differ by is added to those of whatever model they are compared with, as its channels read it, and the
+    /// covariance of both is added. Modes that the baseline does not show are left out.
     ///
     /// `None` where the FRFs are not the same.
     pub fn relative_to(
@@ -22,6 +24,7 @@ impl RecordedModes {
         let frfs = self.frfs();
         let mut relative = self.clone();
         let mut shared = Vec::new();
+        let mut offsets = vec![vec![Complex64::ZERO; frfs]; relative.modes.len()];
         for (r, mode) in relative.modes.iter_mut().enumerate() {
             let model = own.pairs.iter().find(|(recorded, _)| *recorded == r).map(|(_, m)| *m);
             let pair = model.and_then(|m| of_baseline.pairs.iter().find(|(_, other)| *other == m));
@@ -32,18 +35,16 @@ impl RecordedModes {
             let (was, model) = (&baseline.modes[b], &modelled.modes[m]);
             mode.pole.omega *= model.pole.omega / was.pole.omega;
             mode.pole.damping_ratio *= model.pole.damping_ratio / was.pole.damping_ratio;
-            for ((residue, was), model) in mode.residues.iter_mut().zip(&was.residues).zip(&model.residues) {
-                *residue += model - was;
-            }
+            let both = was.residues.iter().zip(&model.residues).zip(&modelled.signals[m]);
+            offsets[r] = both.map(|((was, model), signal)| (was - model) / signal).collect();
             shared.push((r, b));
         }
-        for ((terms, was), model) in
-            relative.residual_terms.iter_mut().zip(&baseline.residual_terms).zip(&modelled.residual_terms)
-        {
-            for k in 0..2 {
-                terms[k] += model[k] - was[k];
-            }
-        }
+        let terms = |(frf, (was, model)): (usize, (&[f64; 2], &[f64; 2]))| {
+            std::array::from_fn(|k| (was[k] - model[k]) / modelled.signals_at_ends[k][frf].re)
+        };
+        let both = baseline.residual_terms.iter().zip(&modelled.residual_terms);
+        let terms = both.enumerate().map(terms).collect();
+        relative.offsets = Some(Offsets { residues: offsets, terms });
         let place = |modes: &RecordedModes, r: usize| {
             let residues = 2 * modes.modes.len() + 2 * r * frfs;
             [2 * r, 2 * r + 1].into_iter().chain(residues..residues + 2 * frfs)

@@ -13,6 +13,7 @@ use crate::modal::prior::priors;
 use crate::modal::searcher::Searcher;
 use crate::modal::sizes::ModelError;
 use crate::{Hypothesis, ModeChange, Observation};
+use jointscope_fixture::Effect;
 use jointscope_model_error::{ErrorSizes, KINDS, Pairing, SizePrior};
 
 /// What a baseline says of the fixture.
@@ -65,6 +66,33 @@ impl ModalJudgement {
         let search = searcher.search(alone);
         let states_gain = nominal.to_fixture().is_ok_and(|fixture| fixture.record_gain().is_some());
         Some(ModalJudgement { states_gain, ..Judge { searcher, search }.judged(features.clone()) })
+    }
+
+    /// The same comparison once more among what may stand in the stead of these effects, themselves included;
+    /// `None` where there are none, or nothing is left to compare.
+    pub(crate) fn among(&self, fitter: &Fitter, effects: &[Effect]) -> Option<Self> {
+        let is_named = |c: usize| effects.iter().any(|effect| self.candidates[c].names(effect));
+        let kept = self.names.iter().filter(|all| all.iter().any(|(c, _, _)| is_named(*c)));
+        let mut names: Vec<usize> = kept.flatten().map(|(c, _, _)| *c).collect();
+        names.sort_unstable();
+        names.dedup();
+        let candidates: Vec<Candidate> = names.iter().map(|&c| self.candidates[c].clone()).collect();
+        let searcher = Searcher {
+            problem: self.features.problem(fitter.observation.work()),
+            candidates: &candidates,
+            nominal: &self.nominal,
+            settings: &fitter.settings.modal,
+            known: None,
+            calibrated: self.since_baseline,
+            suffices: &|_| false,
+            watch: fitter.watch,
+        };
+        if candidates.is_empty() {
+            return None;
+        }
+        let search = searcher.search(searcher.fixture_alone()?);
+        let judged = Judge { searcher, search }.judged(self.features.clone());
+        Some(ModalJudgement { states_gain: self.states_gain, ..judged })
     }
 
     /// What has changed since a `baseline` of the same structure: the fixture is calibrated on it, its error

@@ -24,6 +24,8 @@ pub(crate) struct ModalJudgement {
     pub search: ModalSearch,
     /// All names that were tried.
     pub candidates: Vec<Candidate>,
+    /// What was compared: the fixture as it stands, or as a baseline put it.
+    pub nominal: Hypothesis,
     pub verdict: Verdict,
     /// By effect of the best hypothesis: probability of its name, and other names with theirs.
     pub names: Vec<Vec<(usize, f64, Hypothesis)>>,
@@ -50,7 +52,7 @@ pub(crate) struct ModalJudgement {
 
 impl ModalJudgement {
     /// The same with nothing stated beyond the fixture by itself.
-    pub(super) fn withdrawn(&self) -> Self {
+    pub(crate) fn withdrawn(&self) -> Self {
         let best = Named { names: Vec::new(), fit: self.search.none.clone(), exact: false };
         let nothing = ModalSearch {
             best,

@@ -6,6 +6,7 @@ use crate::modal::known::Known;
 use crate::modal::prior::{Prior, priors};
 use crate::modal::problem::Problem;
 use crate::settings::ModalSettings;
+use crate::settings::modal::judgement::NOTHING;
 use crate::settings::modal::prior::CALIBRATED_QUANTITY;
 use crate::{Hypothesis, Watch};
 use jointscope_fixture::Effect;
@@ -95,20 +96,24 @@ impl Searcher<'_> {
     /// minimum; not over a calibrated one, which stays where it is.
     pub(super) fn is_told(&self, named: &Named, none: &ModalFit) -> bool {
         let fit = &named.fit;
+        let sizes = self.widened(fit);
+        let Some(covariance) = fit.covariance_at(&sizes) else { return false };
+        let effects = 0..fit.hypothesis.effect_count();
+        let deviations = effects.map(|index| fit.hypothesis.deviations_of(index, &covariance));
+        let deviations = deviations.fold(f64::INFINITY, f64::min);
+        if deviations < NOTHING {
+            return false;
+        }
         let undoubted = self.settings.undoubted * self.statements(&named.names).len() as f64;
         if !self.calibrated && fit.ln - none.ln > undoubted {
             return true;
         }
-        let sizes = self.widened(fit);
         // Of a calibrated fixture nothing else moves: what the effect gains is its own.
         let alone = self.calibrated && named.names.len() == 1;
         if alone && self.gains_at(&sizes, fit, none) > self.odds_of_one() {
             return true;
         }
-        let Some(covariance) = fit.covariance_at(&sizes) else { return false };
-        let least = self.settings.least;
-        (0..fit.hypothesis.effect_count())
-            .all(|index| fit.hypothesis.deviations_of(index, &covariance) >= least)
+        deviations >= self.settings.least
     }
 
     /// Sizes of the model's error that may be larger than the most probable ones: what uncertainties are

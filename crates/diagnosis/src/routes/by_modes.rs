@@ -2,10 +2,12 @@
 
 use super::parts::{Given, Parts};
 use crate::fit::Fit;
+use crate::fitter::Fitter;
 use crate::held_out::{Division, JUDGEMENT_STEP};
 use crate::location::{LOCATION_STEP, Location, located};
 use crate::modal::{Known, ModalJudgement};
 use crate::search::Search;
+use crate::settings::modal::judgement::AS_WELL_WITHOUT;
 use crate::settings::work::shares::OF_HELD_OUT;
 use jointscope_findings::{HeldOut, Verdict};
 
@@ -13,7 +15,7 @@ use jointscope_findings::{HeldOut, Verdict};
 /// fixture refitted, or a search.
 pub(super) fn by_modes(given: Given, on_lines: &Search, modal: &ModalJudgement) -> Parts {
     let work = given.fitter.observation.work();
-    let (modal, search) = modal.predicted(given.fitter, on_lines);
+    let (modal, search) = telling_of_lines(given.fitter, on_lines, modal);
     let division = given.division.filter(|_| work.allows(JUDGEMENT_STEP));
     let held_out = division.and_then(|division| {
         work.within_rest(OF_HELD_OUT, || judged_on_held_out(given, division, on_lines, &modal, &search))
@@ -21,7 +23,7 @@ pub(super) fn by_modes(given: Given, on_lines: &Search, modal: &ModalJudgement) 
     let locations = places_of_what_is_left(given, &modal, &search);
     Parts {
         verdict: modal.verdict,
-        findings: modal.findings(&search.candidates),
+        findings: modal.findings(&modal.candidates),
         locations,
         held_out,
         search,
@@ -31,6 +33,37 @@ pub(super) fn by_modes(given: Given, on_lines: &Search, modal: &ModalJudgement) 
         baseline: None,
         tried: modal.tried(),
     }
+}
+
+/// The comparison by modes, and its models on lines, all of whose names these miss where they are left out:
+/// what does nothing to the lines stands for an error of features, a gain among them. What a calibrated model
+/// is off by in both states decides nothing on lines.
+fn telling_of_lines(fitter: &Fitter, on_lines: &Search, modal: &ModalJudgement) -> (ModalJudgement, Search) {
+    let (mut modal, mut search) = modal.predicted(fitter, on_lines);
+    if modal.since_baseline {
+        return (modal, search);
+    }
+    while let Some(index) = idlest(fitter, &search.repaired) {
+        let mut needed = search.repaired.hypothesis.effects();
+        needed.remove(index);
+        (modal, search) = match modal.among(fitter, &needed) {
+            Some(again) => again.predicted(fitter, on_lines),
+            None => {
+                let none = Search { repaired: search.refitted.clone(), ..search };
+                return (modal.withdrawn(), none);
+            }
+        };
+    }
+    (modal, search)
+}
+
+/// The effect of a model, by its index, that its lines miss least, where they are met as well without it.
+fn idlest(fitter: &Fitter, repaired: &Fit) -> Option<usize> {
+    let hypothesis = &repaired.hypothesis;
+    let without = |index: usize| Some((index, Fit::at(hypothesis.without(index), fitter.observation)?.chi2));
+    let missed = (0..hypothesis.effect_count()).filter_map(without);
+    let (index, chi2) = missed.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (chi2 < AS_WELL_WITHOUT * repaired.chi2).then_some(index)
 }
 
 /// How well what modes tell of the recording without what is held out predicts that. `search` is what was

@@ -140,6 +140,12 @@ pub(crate) mod judgement {
     /// Probability of names that explain the modes, and not the lines: what a usual finding has beside the
     /// largest weight of something that is not listed.
     pub(crate) const AT_ODDS: f64 = 2.0 / 3.0;
+    /// Times the χ² of a model's lines that is as good: of 40 right names in solids the weakest, a delay of 5
+    /// µs, had 1.7 times as much without; masses of nothing and second names that stand for errors had 1.01
+    /// times as much and less.
+    pub(crate) const AS_WELL_WITHOUT: f64 = 1.01;
+    /// Standard deviations from nothing below which an effect is nothing, whatever it gains.
+    pub(crate) const NOTHING: f64 = 1.0;
     /// Damping ratio of a recorded pole above which it stands for no mode, half its frequency wide: a ripple
     /// over the band had 0.8.
     pub(crate) const NO_PEAK: f64 = 0.25;
