@@ -35,8 +35,11 @@ impl RecordedModes {
             let (was, model) = (&baseline.modes[b], &modelled.modes[m]);
             mode.pole.omega *= model.pole.omega / was.pole.omega;
             mode.pole.damping_ratio *= model.pole.damping_ratio / was.pole.damping_ratio;
-            let both = was.residues.iter().zip(&model.residues).zip(&modelled.signals[m]);
-            offsets[r] = both.map(|((was, model), signal)| (was - model) / signal).collect();
+            let offset = |frf: usize| {
+                let with_leak = model.residues[frf] + modelled.leaks[frf][b];
+                (was.residues[frf] - with_leak) / modelled.signals[m][frf]
+            };
+            offsets[r] = (0..frfs).map(offset).collect();
             shared.push((r, b));
         }
         let terms = |(frf, (was, model)): (usize, (&[f64; 2], &[f64; 2]))| {

@@ -1,14 +1,19 @@
-//! What a model leaves out of every joint alike.
+//! What a model leaves out at several places alike: of every joint, or under two bodies.
 //!
 //! Whoever takes one strip for massless takes all of them so. To him that is one omission; to a search by
 //! single names it is one for each joint, none of which explains the recording without the others. Here a
 //! kind at every joint is tried at once, as one statement among all. How large it is at each joint is fitted,
 //! told and stated joint by joint.
+//!
+//! A structure that lies on two pieces of foam has two supports that a free fixture does not know, and one of
+//! them alone leaves it a motion without any frequency: neither explains anything without the other. They are
+//! one statement too, as long as the fixture itself holds the structure nowhere.
 
 use crate::candidate::Candidate;
 use crate::modal::fit::SetOut;
 use crate::modal::searcher::{Named, STARTS, Searcher};
-use jointscope_fixture::{Effect, Place};
+use crate::settings::modal::suspensions::MOST_BODIES;
+use jointscope_fixture::{Dof, Effect, EffectKind, Place};
 use std::collections::BTreeSet;
 
 impl Searcher<'_> {
@@ -31,10 +36,39 @@ impl Searcher<'_> {
         all
     }
 
+    /// The candidates of a suspension that a fixture without any does not know: a support under each of two
+    /// bodies.
+    fn of_suspensions(&self) -> Vec<Vec<usize>> {
+        let fixture = self.nominal.fixture();
+        let holds = |effect: &Effect| effect.kind == EffectKind::Support;
+        if !fixture.supports().is_empty() || fixture.physics().iter().any(holds) {
+            return Vec::new();
+        }
+        let is_support = |candidate: &Candidate| {
+            let holds = candidate.kind == EffectKind::Support && candidate.dof != Some(Dof::Rotation);
+            holds && matches!(candidate.place, Place::Body(_))
+        };
+        let all: Vec<usize> =
+            (0..self.candidates.len()).filter(|&c| is_support(&self.candidates[c])).collect();
+        let others = |(at, one): (usize, &usize)| {
+            let one = *one;
+            all[at + 1..].iter().map(move |other| vec![one, *other]).collect::<Vec<_>>()
+        };
+        match all.len() {
+            0..=MOST_BODIES => all.iter().enumerate().flat_map(others).collect(),
+            count => vec![vec![all[0], all[count - 1]]],
+        }
+    }
+
+    /// What is one statement though it is several effects.
+    fn of_several(&self) -> Vec<Vec<usize>> {
+        [self.of_every_joint(), self.of_suspensions()].concat()
+    }
+
     /// What effects of these names state, by their places in the list: a kind at every joint is one
-    /// statement, every other effect is one by itself.
+    /// statement, so is a suspension, every other effect is one by itself.
     pub(super) fn statements(&self, names: &[usize]) -> Vec<Vec<usize>> {
-        let whole = self.of_every_joint().into_iter().filter(|all| all.iter().all(|c| names.contains(c)));
+        let whole = self.of_several().into_iter().filter(|all| all.iter().all(|c| names.contains(c)));
         let places = |all: Vec<usize>| (0..names.len()).filter(|&at| all.contains(&names[at])).collect();
         let mut statements: Vec<Vec<usize>> = whole.map(places).collect();
         let alone: Vec<usize> = (0..names.len())
@@ -45,10 +79,10 @@ impl Searcher<'_> {
         statements
     }
 
-    /// Fits of `base` with one kind of effect more, at every joint that may lack it and does not have it yet:
-    /// the best of each kind, the most probable first.
+    /// Fits of `base` with one kind of effect more, at every joint that may lack it and does not have it yet,
+    /// or under two bodies: the best of each statement, the most probable first.
     pub(super) fn at_every_joint(&self, base: &Named) -> Vec<Named> {
-        let mut groups = self.of_every_joint();
+        let mut groups = self.of_several();
         groups.iter_mut().for_each(|names| names.retain(|c| !base.names.contains(c)));
         // Ratios that are free as well would follow their own errors beside another effect: how all joints
         // dissipate is asked where it may be all that is left out.
@@ -61,20 +95,21 @@ impl Searcher<'_> {
         let bases = self.bases(base);
         let starts: Vec<(usize, Vec<Effect>)> = groups
             .iter()
-            .flat_map(|names| self.starts_at_all(names).into_iter().map(|effects| (names[0], effects)))
+            .enumerate()
+            .flat_map(|(at, names)| self.starts_at_all(names).into_iter().map(move |effects| (at, effects)))
             .collect();
         let starts = starts.iter().flat_map(|start| bases.iter().map(move |base| (start, *base))).collect();
-        let scored = self.problem.work.each(starts, STARTS, |((first, effects), from)| {
+        // Starts are told apart by the places of their statements.
+        let scored = self.problem.work.each(starts, STARTS, |((at, effects), from)| {
             let hypothesis = effects.iter().fold(from.clone(), |rest, effect| rest.with(effect.clone()));
-            self.scored(*first, hypothesis, &base.fit)
+            self.scored(*at, hypothesis, &base.fit)
         });
         let mut chosen = self.rescored(scored);
         let mut seen = BTreeSet::new();
         chosen.retain(|start| seen.insert(start.candidate));
         let least = self.least_beside(base);
         let mut fits = self.problem.work.each(chosen, STARTS, |start| {
-            let names = groups.iter().find(|names| names[0] == start.candidate)?;
-            self.fitted_with(base, names, &start.hypothesis, (SetOut::Both, least))
+            self.fitted_with(base, &groups[start.candidate], &start.hypothesis, (SetOut::Both, least))
         });
         fits.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
         fits

@@ -3,6 +3,7 @@
 mod every_joint;
 mod phases;
 mod search;
+mod suspended;
 
 use crate::catalogue::catalogue;
 use crate::estimates::estimates;

@@ -96,3 +96,44 @@ fn places_of_what_is_left(given: Given, modal: &ModalJudgement, search: &Search)
     let refitted = Fit::at(modal.stated[0].clone(), observation);
     located(*given.fitter, &search.nominal.hypothesis, refitted.as_ref().unwrap_or(&search.refitted))
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::settings::Settings;
+    use crate::simulated::simulated;
+    use crate::{Hypothesis, Watch};
+    use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
+    use jointscope_spectra::{FrfPair, SpectralLines};
+
+    #[test]
+    fn a_name_without_which_lines_are_met_as_well_is_idle() {
+        let text = r#"{ "bodies": { "A": { "mass": 1.1, "inertia": 9.5e-4, "x_cg": -0.03 }, "B": { "mass": 1.2, "inertia": 9.9e-4, "x_cg": 0.095 } },
+             "points": { "1": { "body": "A", "x": -0.06 }, "2": { "body": "A", "x": 0 }, "3": { "body": "B", "x": 0.065 }, "4": { "body": "B", "x": 0.125 } },
+             "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 } } },
+             "damping": { "modal_ratios": [0.004, 0.006] } }"#;
+        let fixture = Fixture::from_json(text).unwrap();
+        let mass = |grams: f64| {
+            Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.1, 1e-3 * grams])
+        };
+        let gain =
+            |factor: f64| Effect::new(EffectKind::ChannelGain, Place::Response("4".into()), None, &[factor]);
+        let pairs = [FrfPair::transverse("3", "1"), FrfPair::transverse("4", "1")];
+        let lines = SpectralLines::even(20.0, 2.5, 380).unwrap();
+        let truth = fixture.clone().with_physics(vec![mass(20.0)]).unwrap();
+        let observation = simulated(&truth, &pairs, &lines, 1e-6);
+        let settings = Settings::default();
+        let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
+        let nominal = Hypothesis::nominal(&fixture, false);
+        for (effects, expected) in [
+            (vec![mass(18.0)], None),
+            (vec![mass(1e-4)], Some(0)),
+            (vec![mass(19.9), gain(0.9999)], Some(1)),
+            (vec![gain(1.3), mass(18.0)], Some(0)),
+        ] {
+            let with = effects.iter().fold(nominal.clone(), |rest, effect| rest.with(effect.clone()));
+            assert_eq!(idlest(&fitter, &Fit::at(with, &observation).unwrap()), expected, "{effects:?}");
+        }
+    }
+}

@@ -157,3 +157,10 @@ pub(crate) mod changes {
     /// moves a frequency by.
     pub(crate) const SAME: f64 = 0.02;
 }
+
+/// Suspensions that a fixture does not know.
+pub(crate) mod suspensions {
+    /// Bodies of which every two are tried; of more, the first and the last: who hangs a chain up hangs it up
+    /// near its ends.
+    pub(crate) const MOST_BODIES: usize = 4;
+}
