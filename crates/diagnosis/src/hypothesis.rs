@@ -340,7 +340,7 @@ impl Hypothesis {
         let fixture = moved(&self.fixture, &self.tolerances, &self.coordinates);
         let mut physics = fixture.physics().to_vec();
         physics.extend(effects);
-        fixture.with_physics(physics)
+        fixture.with_moved_physics(physics)
     }
 
     /// Its effects without their dashpots, which leaves springs, masses and what no mode depends on; `None`

@@ -59,7 +59,12 @@ fn a_channel_s_gain_acts_on_all_that_it_read_of_the_baseline_whatever_the_model_
         let diagnosis = Diagnosis::of(&fixture, &suspect, &options).unwrap();
         let found: Vec<_> =
             diagnosis.findings.iter().map(|f| (f.effect.kind, f.effect.place.clone())).collect();
-        assert_eq!(found, [(EffectKind::ChannelGain, Place::Response("4".into()))], "{factor} {:?}", diagnosis.findings);
+        assert_eq!(
+            found,
+            [(EffectKind::ChannelGain, Place::Response("4".into()))],
+            "{factor} {:?}",
+            diagnosis.findings
+        );
         let found = &diagnosis.findings[0];
         assert!((found.effect.value(0) / factor - 1.0).abs() < 2e-3, "{factor}: {}", found.effect.value(0));
         assert!(found.probability > 0.9, "{factor}: {}", found.probability);
