@@ -17,7 +17,7 @@ use crate::modal::problem::{Iterate, Problem};
 use crate::search::Search;
 use crate::settings::ModalSettings;
 use crate::settings::effects::quantities::DEPARTED;
-use crate::settings::modal::judgement::NO_PEAK;
+use crate::settings::modal::judgement::{BOUGHT, NO_PEAK};
 use crate::work::Work;
 use crate::{Hypothesis, Observation};
 use jointscope_findings::Verdict;
@@ -27,7 +27,8 @@ use jointscope_model_error::ErrorSizes;
 impl ModalJudgement {
     /// The comparison with its models as they predict lines; `within` is the fixture refitted on them. What
     /// explains the modes in part only, and leaves more than a part of what lines miss without it, is not
-    /// stated, unless the fixture by itself comes as close only by a departure beyond chance.
+    /// stated, unless the fixture by itself comes as close only by a departure beyond chance; nor is what explains
+    /// them and spoils the lines.
     pub(crate) fn predicted(&self, fitter: &Fitter, within: &Search) -> (Self, Search) {
         let settings = &fitter.settings.modal;
         let models = self.predicting(fitter.observation.work(), settings);
@@ -38,7 +39,7 @@ impl ModalJudgement {
         let misses = search.repaired.chi2 >= settings.part * search.refitted.chi2 && !bought;
         let is_none = match self.verdict {
             Verdict::PartlyExplained => misses,
-            Verdict::Explained => self.spoils_lines(fitter, &search),
+            Verdict::Explained => self.spoils_lines(fitter, &search, if bought { BOUGHT } else { 1.0 }),
             Verdict::Consistent | Verdict::Unexplained => false,
         };
         if is_none {
@@ -51,9 +52,10 @@ impl ModalJudgement {
     }
 
     /// Whether lines miss far more with what explains the modes than without: gains of all records, which may
-    /// be off by anything among modes, make up for a gain that is none.
-    fn spoils_lines(&self, fitter: &Fitter, search: &Search) -> bool {
-        let spoils = fitter.settings.modal.spoils;
+    /// be off by anything among modes, make up for a gain that is none. What misses less without the names may
+    /// be worth so many times as much.
+    fn spoils_lines(&self, fitter: &Fitter, search: &Search, worth: f64) -> bool {
+        let spoils = worth * fitter.settings.modal.spoils;
         let Search { refitted, repaired, .. } = search;
         let [missed, misses] = [refitted, repaired].map(|fit| fitter.observation.nrmse(&fit.predicted));
         !self.since_baseline && misses > spoils * missed && repaired.chi2 > spoils * spoils * refitted.chi2
