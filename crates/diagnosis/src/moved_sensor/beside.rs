@@ -24,8 +24,8 @@ impl MovedSensor {
         }
     }
 
-    /// What was decided of the recording `without` the sensor, with it; `refitted` is what the fixture by itself
-    /// comes to.
+    /// What was decided of the recording `without` the sensor, with it; `refitted` is what the fixture by
+    /// itself comes to.
     pub(crate) fn beside(
         &self,
         fitter: &Fitter,

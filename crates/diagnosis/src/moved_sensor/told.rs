@@ -6,7 +6,9 @@
 
 use super::by_response::{OfResponse, Seen, by_response};
 use crate::candidate::Candidate;
-use crate::settings::moved_sensor::{EXPLAINED, GAINED, MOST, OTHERWISE, REPEATS, SHAPES, STEPS};
+use crate::settings::moved_sensor::{
+    EXPLAINED, FACTOR_ROUNDS, GAINED, MOST, OTHERWISE, REPEATS, SHAPES, STEPS,
+};
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::{Effect, EffectKind, Place};
 
@@ -123,37 +125,36 @@ impl Responses<'_> {
     /// χ² where each response differs from the others by one factor of all its frequencies, as temperature
     /// or a test on another day makes it.
     fn of_factors(&self, data: &[Datum]) -> f64 {
-        let mut factors = vec![0.0; self.all.len()];
         let of_response: Vec<usize> =
             self.all.iter().enumerate().flat_map(|(r, own)| own.seen().map(move |_| r)).collect();
-        let left = |d: &Datum, factor: f64| d.seen.difference - factor;
-        for _ in 0..STEPS {
-            let with = |(d, r): (&Datum, &usize)| Datum {
-                seen: Seen { difference: left(d, factors[*r]), ..d.seen },
-                ..*d
+        let mut factors = vec![0.0; self.all.len()];
+        let left = |factors: &[f64]| -> Vec<Datum> {
+            let less = |(datum, r): (&Datum, &usize)| {
+                let difference = datum.seen.difference - factors[*r];
+                Datum { seen: Seen { difference, ..datum.seen }, ..*datum }
             };
-            let moved: Vec<Datum> = data.iter().zip(&of_response).map(with).collect();
-            let means = means(&moved, self.modes, |d| d.seen.difference);
+            data.iter().zip(&of_response).map(less).collect()
+        };
+        let difference = |d: &Datum| d.seen.difference;
+        for _ in 0..FACTOR_ROUNDS {
+            let rest = left(&factors);
+            let means = means(&rest, self.modes, difference);
             for (response, factor) in factors.iter_mut().enumerate() {
-                let own = moved.iter().zip(&of_response).filter(|(_, r)| **r == response);
+                let own = rest.iter().zip(&of_response).filter(|(_, r)| **r == response);
                 let (sum, weight) = own.fold((0.0, 0.0), |(sum, weight), (d, _)| {
-                    (sum + d.weight() * (d.seen.difference - means[d.seen.mode]), weight + d.weight())
+                    (sum + d.weight() * (difference(d) - means[d.seen.mode]), weight + d.weight())
                 });
                 *factor += if weight > 0.0 { sum / weight } else { 0.0 };
             }
         }
-        let with = |(d, r): (&Datum, &usize)| Datum {
-            seen: Seen { difference: left(d, factors[*r]), ..d.seen },
-            ..*d
-        };
-        let moved: Vec<Datum> = data.iter().zip(&of_response).map(with).collect();
-        product(&moved, self.modes, |d| d.seen.difference, |d| d.seen.difference)
+        product(&left(&factors), self.modes, difference, difference)
     }
 }
 
 impl MovedSensor {
-    /// The sensor among these `names` that a recording's modes show; `model` is the structure without it. `None` where natural
-    /// frequencies do not differ from response to response, or not as a sensor's mass makes them differ.
+    /// The sensor among these `names` that a recording's modes show; `model` is the structure without it.
+    /// `None` where natural frequencies do not differ from response to response, or not as a sensor's mass
+    /// makes them differ.
     pub(crate) fn of(observation: &Observation, model: &Hypothesis, names: &[Candidate]) -> Option<Self> {
         let (all, omegas) = by_response(observation, model)?;
         let responses = Responses { model, all: &all, modes: omegas.len() };
@@ -170,10 +171,12 @@ impl MovedSensor {
         let weight = |chi2: f64| (0.5 * (best.chi2 - chi2) / inflation).exp();
         let factors = responses.of_factors(&best.data) + 2.0 * all.len().saturating_sub(2) as f64;
         let [unlisted, alike] = OTHERWISE;
-        let total = fits.iter().map(|fit| weight(fit.chi2)).sum::<f64>()
-            + unlisted
-            + alike * weight(factors).min(1.0);
-        let named = |fit: &Fitted| (fit.effect.clone(), weight(fit.chi2) / total);
+        let sensors: f64 = fits.iter().map(|fit| weight(fit.chi2)).sum();
+        let alike = alike * weight(factors);
+        if alike > sensors {
+            return None;
+        }
+        let named = |fit: &Fitted| (fit.effect.clone(), weight(fit.chi2) / (sensors + unlisted + alike));
         let (effect, probability) = named(best);
         let frequency = means(&best.data, omegas.len(), |d| d.seen.difference - d.shift);
         let damping = means(&best.data, omegas.len(), |d| d.seen.damping);

@@ -9,6 +9,8 @@ pub(crate) const MOST: f64 = 5.0;
 /// Steps to the mass, each of which takes what it does to the modes for proportional to it: three digits more
 /// with each for masses of some per cent of a body.
 pub(crate) const STEPS: usize = 4;
+/// Rounds in which factors of responses and means of modes follow each other: both stand still long before.
+pub(crate) const FACTOR_ROUNDS: usize = 40;
 /// Standard deviation of a natural frequency from one record to the next whatever its noise, relative: a tenth
 /// of a kelvin moves one of steel by as much.
 pub(crate) const REPEATS: f64 = 2e-5;
