@@ -352,7 +352,8 @@ impl SharedFeatures {
         }
         for frf in 0..frfs {
             let term = |k: usize| {
-                let offset = |own: &Offsets| own.terms[frf][k] * modelled.signals_at_ends[k][frf].re;
+                let signal = |own: &Offsets| modelled.signals_at_ends[k][frf] / own.signals_at_ends[k][frf];
+                let offset = |own: &Offsets| own.terms[frf][k] * signal(own).re;
                 let offset = recorded.offsets.as_ref().map(offset);
                 (modelled.residual_terms[frf][k] + offset.unwrap_or_default()) / recorded.residual_scales[k]
             };

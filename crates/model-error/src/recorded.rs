@@ -19,15 +19,17 @@ pub struct RecordedMode {
     pub resolved: bool,
 }
 
-/// What a baseline's residues and residual terms are beyond those of the model that is calibrated on it, as
-/// channels without gains, delays and filters would have read them: what a channel makes of a structure's
-/// signal it makes of all of that signal, whatever the model knows of it.
+/// What a baseline's residues and residual terms are beyond those of the model that is calibrated on it: what
+/// a channel makes of a structure's signal it makes of all of that signal, whatever the model knows of it.
 #[derive(Debug, Clone)]
 pub(crate) struct Offsets {
-    /// By mode and FRF; nothing of modes that the baseline does not show.
+    /// By mode and FRF, as channels without gains, delays and filters would have read them; nothing of modes
+    /// that the baseline does not show.
     pub residues: Vec<Vec<Complex64>>,
-    /// Mass line and upper residual of each FRF.
+    /// Mass line and upper residual of each FRF, as the channels then read them.
     pub terms: Vec<[f64; 2]>,
+    /// What these then made of each FRF at the lowest and the highest line.
+    pub signals_at_ends: [Vec<Complex64>; 2],
 }
 
 /// Modes and residual terms of a recording, with their covariance.

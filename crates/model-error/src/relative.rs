@@ -42,12 +42,10 @@ impl RecordedModes {
             offsets[r] = (0..frfs).map(offset).collect();
             shared.push((r, b));
         }
-        let terms = |(frf, (was, model)): (usize, (&[f64; 2], &[f64; 2]))| {
-            std::array::from_fn(|k| (was[k] - model[k]) / modelled.signals_at_ends[k][frf].re)
-        };
         let both = baseline.residual_terms.iter().zip(&modelled.residual_terms);
-        let terms = both.enumerate().map(terms).collect();
-        relative.offsets = Some(Offsets { residues: offsets, terms });
+        let terms = both.map(|(was, model)| std::array::from_fn(|k| was[k] - model[k])).collect();
+        let signals_at_ends = modelled.signals_at_ends.clone();
+        relative.offsets = Some(Offsets { residues: offsets, terms, signals_at_ends });
         let place = |modes: &RecordedModes, r: usize| {
             let residues = 2 * modes.modes.len() + 2 * r * frfs;
             [2 * r, 2 * r + 1].into_iter().chain(residues..residues + 2 * frfs)
