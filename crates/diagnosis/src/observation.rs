@@ -143,31 +143,27 @@ impl Observation {
 
     /// The observation of FRFs that are this one's values divided by `kept`, each known as well as before.
     pub(crate) fn divided_by(&self, kept: &[f64]) -> Option<Self> {
-        let n = self.lines().len();
-        let places = |index: usize| index * n..(index + 1) * n;
         let values = self.values().iter().zip(kept).map(|(value, kept)| value / kept).collect();
-        let mut frfs =
-            FrfSet::new(self.lines().clone(), FrfForm::Accelerance, self.pairs().to_vec(), values).ok()?;
-        (0..self.pairs().len()).for_each(|index| frfs.set_averages(index, self.frfs.averages(index)));
-        let scaled = |all: &[f64], power: i32| {
-            let of = |index: usize| all[places(index)].iter().zip(&kept[places(index)]);
-            (0..self.pairs().len()).flat_map(of).map(|(value, kept)| value * kept.powi(power)).collect()
-        };
-        let (weight, level) = (scaled(&self.weight, 2), scaled(&self.level, -2));
-        Some(Observation { frfs, weight, level, ..self.clone() })
+        self.with_values(values, |at| kept[at], 2)
     }
 
-    /// The observation of FRFs that are so many `factors` times this one's values, each relatively as well
-    /// known as before.
+    /// The observation of FRFs that are so many `factors` times this one's values, each relatively known as well
+    /// as before.
     pub(crate) fn times(&self, factors: &[Complex64]) -> Option<Self> {
         let values = self.values().iter().zip(factors).map(|(value, factor)| value * factor).collect();
+        self.with_values(values, |at| factors[at].norm(), -2)
+    }
+
+    /// The same with other values, whose weights are this one's times a power of a size, and whose levels are
+    /// divided by it.
+    fn with_values(&self, values: Vec<Complex64>, size: impl Fn(usize) -> f64, power: i32) -> Option<Self> {
         let mut frfs =
             FrfSet::new(self.lines().clone(), FrfForm::Accelerance, self.pairs().to_vec(), values).ok()?;
         (0..self.pairs().len()).for_each(|index| frfs.set_averages(index, self.frfs.averages(index)));
         let scaled = |all: &[f64], power: i32| {
-            all.iter().zip(factors).map(|(value, factor)| value * factor.norm().powi(power)).collect()
+            all.iter().enumerate().map(|(at, value)| value * size(at).powi(power)).collect()
         };
-        let (weight, level) = (scaled(&self.weight, -2), scaled(&self.level, 2));
+        let (weight, level) = (scaled(&self.weight, power), scaled(&self.level, -power));
         Some(Observation { frfs, weight, level, ..self.clone() })
     }
 

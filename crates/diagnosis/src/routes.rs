@@ -68,14 +68,14 @@ pub(crate) fn judged(
 ) -> Result<Parts, DiagnosisError> {
     let division = Division::of(fitter.observation, options)?;
     let given = Given { fitter, fixture, exact: options.exact, division: division.as_ref() };
-    let refitted = given.without_effects().ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
+    let refitted = refitted(given)?;
     if let Some(found) = refitted.explained_by_odd_record(fitter) {
         return Ok(from_found(given, refitted, found, None));
     }
     if refitted.lacks_much(fitter, &refitted.refitted)
-        && let Some(sensor) = moved_sensor(fitter, &refitted)
+        && let Some((sensor, unloaded)) = moved_sensor(fitter, &refitted)
     {
-        return beside_sensor(given, options, refitted, &sensor);
+        return beside_sensor(given, options, refitted, (&sensor, &unloaded));
     }
     let ground = Ground::of(given, refitted);
     let Ground { without_effects, modal } = &ground;
@@ -86,42 +86,48 @@ pub(crate) fn judged(
     Ok(ground.decided(given))
 }
 
-/// The sensor that makes natural frequencies differ from response to response, if one does.
-fn moved_sensor(fitter: &Fitter, refitted: &Search) -> Option<MovedSensor> {
+/// The fixture as it stands and refitted.
+fn refitted(given: Given) -> Result<Search, DiagnosisError> {
+    given.without_effects().ok_or(DiagnosisError::Lines(SpectraError::NoLines))
+}
+
+/// The sensor that makes natural frequencies differ from response to response, if one does, and the recording
+/// without it.
+fn moved_sensor(fitter: &Fitter, refitted: &Search) -> Option<(MovedSensor, Observation)> {
     fitter.watch.stage("comparing natural frequencies from response to response");
-    MovedSensor::of(fitter.observation, &refitted.nominal.hypothesis, &refitted.candidates)
+    let nominal = &refitted.nominal.hypothesis;
+    let sensor = MovedSensor::of(fitter.observation, nominal, &refitted.candidates)?;
+    let unloaded = sensor.taken_off(fitter.observation)?;
+    Some((sensor, unloaded))
 }
 
 /// The diagnosis with a `sensor` that loads the structure in some FRFs only, so that the poles all of them
 /// share are of no structure: by lines where it explains them down to their noise, alone or beside what is
-/// found without it, else beside that.
+/// found in the recording without it, `unloaded`, else beside that.
 fn beside_sensor(
     given: Given,
     options: &DiagnosisOptions,
-    refitted: Search,
-    sensor: &MovedSensor,
+    as_loaded: Search,
+    (sensor, unloaded): (&MovedSensor, &Observation),
 ) -> Result<Parts, DiagnosisError> {
     let Given { fitter, fixture, exact, .. } = given;
-    if let Some(found) = refitted.explained_by_moved_sensor(fitter, Some(&sensor.effect)) {
-        return Ok(from_found(given, refitted, found, None));
+    if let Some(found) = as_loaded.explained_by_moved_sensor(fitter, Some(&sensor.effect)) {
+        return Ok(from_found(given, as_loaded, found, None));
     }
-    let unloaded =
-        sensor.taken_off(fitter.observation).ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
-    let division = Division::of(&unloaded, options)?;
-    let without = Given { fitter: &fitter.on(&unloaded), fixture, exact, division: division.as_ref() };
-    let ground = without.without_effects().ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
-    let without = Ground::of(without, ground).decided(without);
+    let division = Division::of(unloaded, options)?;
+    let without = Given { fitter: &fitter.on(unloaded), fixture, exact, division: division.as_ref() };
+    let without = Ground::of(without, refitted(without)?).decided(without);
     // What leaves little of the lines beside it is for them to find.
     let both = without.search.repaired.hypothesis.with(sensor.effect.clone());
     let slight = fitter.settings.modal.slight * fitter.observation.degrees() as f64;
     if let Some(repaired) = fitter.local(&both, None, slight).filter(|fit| fit.objective < slight) {
-        let found = Search { repaired, ..refitted.clone() };
-        let parts = from_found(given, refitted.clone(), found, None);
+        let found = Search { repaired, ..as_loaded.clone() };
+        let parts = from_found(given, as_loaded.clone(), found, None);
         if parts.verdict == Verdict::Explained {
             return Ok(parts);
         }
     }
-    Ok(sensor.beside(fitter, (refitted, without), given.division))
+    Ok(sensor.beside(fitter, (as_loaded, without), given.division))
 }
 
 /// The diagnosis by lines that sets out from what was found among few names.

@@ -15,6 +15,7 @@ use crate::modal::sizes::ModelError;
 use crate::{Hypothesis, ModeChange, Observation};
 use jointscope_fixture::Effect;
 use jointscope_model_error::{ErrorSizes, KINDS, Pairing, SizePrior};
+use std::collections::BTreeSet;
 
 /// What a baseline says of the fixture.
 #[derive(Debug, Clone)]
@@ -68,28 +69,26 @@ impl ModalJudgement {
         Some(ModalJudgement { states_gain, ..Judge { searcher, search }.judged(features.clone()) })
     }
 
-    /// The same comparison once more among what may stand in the stead of these effects, themselves included;
-    /// `None` where there are none, or nothing is left to compare.
-    pub(crate) fn among(&self, fitter: &Fitter, effects: &[Effect]) -> Option<Self> {
+    /// The same comparison of a fixture with a recording once more, among what may stand in the stead of these
+    /// effects, themselves included; `None` where there are none, or nothing is left to compare.
+    pub(crate) fn among(&self, fitter: &Fitter, nominal: &Hypothesis, effects: &[Effect]) -> Option<Self> {
         let is_named = |c: usize| effects.iter().any(|effect| self.candidates[c].names(effect));
         let kept = self.names.iter().filter(|all| all.iter().any(|(c, _, _)| is_named(*c)));
-        let mut names: Vec<usize> = kept.flatten().map(|(c, _, _)| *c).collect();
-        names.sort_unstable();
-        names.dedup();
-        let candidates: Vec<Candidate> = names.iter().map(|&c| self.candidates[c].clone()).collect();
-        let searcher = Searcher {
-            problem: self.features.problem(fitter.observation.work()),
-            candidates: &candidates,
-            nominal: &self.nominal,
-            settings: &fitter.settings.modal,
-            known: None,
-            calibrated: self.since_baseline,
-            suffices: &|_| false,
-            watch: fitter.watch,
-        };
+        let names: BTreeSet<usize> = kept.flatten().map(|(c, _, _)| *c).collect();
+        let candidates: Vec<Candidate> = names.into_iter().map(|c| self.candidates[c].clone()).collect();
         if candidates.is_empty() {
             return None;
         }
+        let searcher = Searcher {
+            problem: self.features.problem(fitter.observation.work()),
+            candidates: &candidates,
+            nominal,
+            settings: &fitter.settings.modal,
+            known: None,
+            calibrated: false,
+            suffices: &|_| false,
+            watch: fitter.watch,
+        };
         let search = searcher.search(searcher.fixture_alone()?);
         let judged = Judge { searcher, search }.judged(self.features.clone());
         Some(ModalJudgement { states_gain: self.states_gain, ..judged })

@@ -62,7 +62,6 @@ impl Judge<'_> {
             verdict,
             places,
             candidates: self.searcher.candidates.to_vec(),
-            nominal: self.searcher.nominal.clone(),
             names,
             free_fit_chi2_per_dof: self.searcher.problem.recorded.chi2_per_dof,
             excess_residual_terms: self.searcher.problem.recorded.has_excess_residual_terms(),

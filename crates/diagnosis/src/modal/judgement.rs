@@ -24,8 +24,6 @@ pub(crate) struct ModalJudgement {
     pub search: ModalSearch,
     /// All names that were tried.
     pub candidates: Vec<Candidate>,
-    /// What was compared: the fixture as it stands, or as a baseline put it.
-    pub nominal: Hypothesis,
     pub verdict: Verdict,
     /// By effect of the best hypothesis: probability of its name, and other names with theirs.
     pub names: Vec<Vec<(usize, f64, Hypothesis)>>,

@@ -3,7 +3,7 @@
 use crate::modal::recorded;
 use crate::settings::moved_sensor::{BESIDE_POLE, SAME_POLE};
 use crate::{Hypothesis, Observation};
-use jointscope_fixture::Fixture;
+use jointscope_fixture::{Fixture, Place};
 use jointscope_model_error::{ModelledModes, Pairing, RecordedModes};
 use jointscope_spectra::{Channel, Dof};
 
@@ -27,6 +27,14 @@ pub(super) struct OfResponse {
     modelled: ModelledModes,
     /// (recorded, modelled, which mode of the model), ascending.
     pairs: Vec<(usize, usize, usize)>,
+}
+
+/// Whether a sensor at a place loads the structure in the FRFs of a response.
+pub(super) fn loads(sensor: &Place, response: &Channel) -> bool {
+    match sensor {
+        Place::Response(name) => response.is_named(name),
+        _ => true,
+    }
 }
 
 impl OfResponse {

@@ -91,3 +91,12 @@ fn a_sensor_that_is_taken_off_leaves_what_the_structure_does_without_it() {
     assert!(missed(&observation) > 0.05, "{}", missed(&observation));
     assert!(missed(&unloaded) < 0.1 * missed(&observation), "{}", missed(&unloaded));
 }
+
+#[test]
+fn one_mode_alone_does_not_tell_a_sensor_from_a_warmer_day() {
+    let whole = recorded(2.07e11, &[(Place::Response("4".into()), 6.0)]);
+    let sensor = told(&whole.reduced(|hz| hz < 400.0, |_| true).unwrap()).unwrap();
+    assert_eq!(sensor.off.len(), 1, "modes in the band");
+    let any_place = sensor.probability + sensor.alternatives.iter().map(|(_, p)| p).sum::<f64>();
+    assert!(any_place < 0.95, "{any_place}");
+}

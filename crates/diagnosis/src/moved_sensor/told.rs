@@ -4,7 +4,7 @@
 //! there, c whatever the model is off by, the same in all of them and eliminated. What is left,
 //! Σ (ln ω − c − s)²/(σ² + (ε·s)²), has a χ² distribution; ε is what the model's shapes make s uncertain by.
 
-use super::by_response::{OfResponse, Seen, by_response};
+use super::by_response::{OfResponse, Seen, by_response, loads};
 use crate::candidate::Candidate;
 use crate::settings::moved_sensor::{
     EXPLAINED, FACTOR_ROUNDS, GAINED, MOST, OTHERWISE, REPEATS, SHAPES, STEPS,
@@ -87,8 +87,10 @@ impl Responses<'_> {
         let fixture = self.model.with(sensor).to_fixture().ok()?;
         let mut data = Vec::new();
         for own in self.all {
-            let loads = *place == Place::Responses || *place == Place::Response(own.response.to_string());
-            let shifts = if loads { own.shifts(&fixture)? } else { vec![0.0; own.seen().count()] };
+            let shifts = match loads(place, &own.response) {
+                true => own.shifts(&fixture)?,
+                false => vec![0.0; own.seen().count()],
+            };
             data.extend(own.seen().zip(shifts).map(|(seen, shift)| Datum { seen, shift }));
         }
         Some(data)

@@ -5,9 +5,9 @@
 //! at s = iω it is taken at iω·ω_m/ω_r + (ζ_r − ζ_m)·ω_m, which is as far from the model's pole (m) as s is
 //! from the recorded one (r), in units of either's frequency; between modes both go on smoothly.
 
+use super::by_response::loads;
 use super::told::MovedSensor;
 use crate::Observation;
-use jointscope_fixture::Place;
 use jointscope_lumped::{Instrument, ModelledTest};
 use jointscope_spectra::{Channel, FrfPair};
 use num_complex::Complex64;
@@ -50,11 +50,7 @@ impl MovedSensor {
         let mass = self.effect.value(0);
         let mut factors = Vec::with_capacity(observation.values().len());
         for pair in observation.pairs() {
-            let loads = match &self.effect.place {
-                Place::Response(name) => pair.response.is_named(name),
-                _ => true,
-            };
-            match loads {
+            match loads(&self.effect.place, &pair.response) {
                 true => factors
                     .extend(self.accelerance(observation, &pair.response)?.iter().map(|a| 1.0 + mass * a)),
                 false => factors.extend(vec![Complex64::ONE; observation.lines().len()]),

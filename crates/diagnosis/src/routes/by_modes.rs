@@ -46,7 +46,7 @@ fn telling_of_lines(fitter: &Fitter, on_lines: &Search, modal: &ModalJudgement) 
     while let Some(index) = idlest(fitter, &search.repaired) {
         let mut needed = search.repaired.hypothesis.effects();
         needed.remove(index);
-        (modal, search) = match modal.among(fitter, &needed) {
+        (modal, search) = match modal.among(fitter, &on_lines.nominal.hypothesis, &needed) {
             Some(again) => again.predicted(fitter, on_lines),
             None => {
                 let none = Search { repaired: search.refitted.clone(), ..search };
