@@ -89,10 +89,10 @@ impl ModelledTest {
         self.model.is_first_order()
     }
 
-    /// What gains, delays and filters of its channels make of each FRF at a frequency, rad/s.
-    pub fn signals(&self, omega: f64) -> Vec<Complex64> {
-        let s = self.chain.s(omega);
-        (0..self.chain.readings.len()).map(|index| self.chain.factor(index, omega) / (s * s)).collect()
+    /// What gains and delays of its channels, but no filters, make of each FRF at a frequency, rad/s.
+    pub fn gains_and_delays(&self, omega: f64) -> Vec<Complex64> {
+        let of = |reading: &Reading| reading.gain * Complex64::cis(-omega * reading.delay);
+        self.chain.readings.iter().map(of).collect()
     }
 
     fn receptances(&self) -> Receptances<'_> {

@@ -44,7 +44,7 @@ pub struct ModelledModes {
     /// What a free fit with the recording's poles adds to the residue of each of them, FRF by FRF, as the
     /// residual terms cannot write all that the modes out of the band do.
     pub(crate) leaks: Vec<Vec<Complex64>>,
-    /// What gains, delays and filters of the channels make of each FRF at each mode, and at the lowest and the
+    /// What gains and delays of the channels make of each FRF at each mode, and at the lowest and the
     /// highest line.
     pub(crate) signals: Vec<Vec<Complex64>>,
     pub(crate) signals_at_ends: [Vec<Complex64>; 2],
@@ -138,8 +138,8 @@ impl ModelledModes {
             last_term += lowered;
         }
         last_term *= outline.recorded as f64 / lines.len() as f64;
-        let signals = modes.iter().map(|mode| test.signals(mode.pole.omega)).collect();
-        let signals_at_ends = [recorded.band.0, recorded.band.1].map(|hz| test.signals(TAU * hz));
+        let signals = modes.iter().map(|mode| test.gains_and_delays(mode.pole.omega)).collect();
+        let signals_at_ends = [recorded.band.0, recorded.band.1].map(|hz| test.gains_and_delays(TAU * hz));
         Some(ModelledModes { modes, parts, residual_terms, leaks, signals, signals_at_ends, last_term })
     }
 

@@ -97,23 +97,18 @@ impl Searcher<'_> {
     pub(super) fn is_told(&self, named: &Named, none: &ModalFit) -> bool {
         let fit = &named.fit;
         let sizes = self.widened(fit);
-        let Some(covariance) = fit.covariance_at(&sizes) else { return false };
-        let effects = 0..fit.hypothesis.effect_count();
-        let deviations = effects.map(|index| fit.hypothesis.deviations_of(index, &covariance));
-        let deviations = deviations.fold(f64::INFINITY, f64::min);
-        if deviations < NOTHING {
-            return false;
-        }
-        let undoubted = self.settings.undoubted * self.statements(&named.names).len() as f64;
-        if !self.calibrated && fit.ln - none.ln > undoubted {
-            return true;
-        }
         // Of a calibrated fixture nothing else moves: what the effect gains is its own.
         let alone = self.calibrated && named.names.len() == 1;
         if alone && self.gains_at(&sizes, fit, none) > self.odds_of_one() {
             return true;
         }
-        deviations >= self.settings.least
+        let Some(covariance) = fit.covariance_at(&sizes) else { return false };
+        let effects = 0..fit.hypothesis.effect_count();
+        let deviations = effects.map(|index| fit.hypothesis.deviations_of(index, &covariance));
+        let deviations = deviations.fold(f64::INFINITY, f64::min);
+        let undoubted = self.settings.undoubted * self.statements(&named.names).len() as f64;
+        let gains_much = !self.calibrated && fit.ln - none.ln > undoubted;
+        deviations >= if gains_much { NOTHING } else { self.settings.least }
     }
 
     /// Sizes of the model's error that may be larger than the most probable ones: what uncertainties are
