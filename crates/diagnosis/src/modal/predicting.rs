@@ -17,7 +17,7 @@ use crate::modal::problem::{Iterate, Problem};
 use crate::search::Search;
 use crate::settings::ModalSettings;
 use crate::settings::effects::quantities::DEPARTED;
-use crate::settings::modal::judgement::{BOUGHT, NO_PEAK};
+use crate::settings::modal::judgement::{BOUGHT, NO_MODEL, NO_PEAK};
 use crate::work::Work;
 use crate::{Hypothesis, Observation};
 use jointscope_findings::Verdict;
@@ -45,7 +45,10 @@ impl ModalJudgement {
         if is_none {
             return (self.withdrawn(), Search { repaired: search.refitted.clone(), ..search });
         }
-        if self.verdict == Verdict::Explained && self.leaves_much_where_incomplete(fitter, &search) {
+        let is_at_odds = || {
+            self.leaves_much_where_incomplete(fitter, &search) || self.tells_nothing_of_lines(fitter, &search)
+        };
+        if self.verdict == Verdict::Explained && is_at_odds() {
             return (self.doubted(), search);
         }
         (self.clone(), search)
@@ -70,6 +73,12 @@ impl ModalJudgement {
         let leaves =
             repaired.chi2_per_dof(fitter.observation) > slight && repaired.chi2 > most * refitted.chi2;
         leaves && !self.since_baseline && (self.is_incomplete_but_usable(fitter) || self.has_no_peak())
+    }
+
+    /// Whether what explains the modes predicts lines no better than zeros do: a mode that it takes out of the
+    /// band is missed by no mode, and by every line.
+    fn tells_nothing_of_lines(&self, fitter: &Fitter, search: &Search) -> bool {
+        !self.since_baseline && fitter.observation.nrmse(&search.repaired.predicted) > NO_MODEL
     }
 
     /// Whether something is recorded beside the modes of the model that is as wide as no mode of a structure.

@@ -54,6 +54,31 @@ fn a_stiffness_that_refutes_what_is_stated_of_it_is_named() {
 }
 
 #[test]
+fn a_strip_whose_width_and_thickness_were_exchanged_is_as_much_softer_and_not_stiffer() {
+    // 5:1, so 25 times too stiff: one natural frequency of the model is five times too high, and out of the
+    // band, where a strip that is stiffer still would have it too.
+    let wrong = BLOCKS.replace("3.67e-10", "91.75e-10");
+    let fixture = Fixture::from_json(&wrong).unwrap();
+    let observation = recorded(&Fixture::from_json(BLOCKS).unwrap(), &["1", "2", "3", "4"]);
+    let settings = Settings::default();
+    let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
+    let nominal = Hypothesis::nominal(&fixture, false);
+    let mut judged = ModalJudgement::of(&fitter, &nominal, &catalogue(&fixture, &observation), None).unwrap();
+    let effects = judged.search.best.fit.hypothesis.effects();
+    let [found] = &effects[..] else { panic!("{effects:?}") };
+    assert_eq!(found.kind, EffectKind::StiffnessChange);
+    assert!((25.0 * found.value(0) - 1.0).abs() < 0.1, "{found:?}");
+    // What a strip stiffer still makes of the lines is no better than zeros.
+    judged.verdict = Verdict::Explained;
+    let within = Search::without_effects(&fitter, &fixture, false).unwrap();
+    assert_eq!(judged.predicted(&fitter, &within).0.verdict, Verdict::Explained);
+    let stiffer = Effect::new(EffectKind::StiffnessChange, found.place.clone(), None, &[40.0]);
+    judged.stated[1] = nominal.with(stiffer);
+    judged.search.best.fit.hypothesis = judged.stated[1].clone();
+    assert_eq!(judged.predicted(&fitter, &within).0.verdict, Verdict::PartlyExplained);
+}
+
+#[test]
 fn a_gain_is_named_whatever_the_model_is_off_by_in_natural_frequency() {
     let fixture = Fixture::from_json(BLOCKS).unwrap();
     // Both natural frequencies are 3 % lower than the model's, ten times as much as is usual, and no name is
