@@ -3,7 +3,7 @@
 use crate::bodies::{extent, inertia_of, mass_of, turns};
 use crate::candidate::{Candidate, candidate};
 use crate::departures::departed;
-use crate::settings::effects::quantities::DEPARTURES;
+use crate::settings::effects::quantities::{CHANGES_OF_SUPPORTS, DEPARTURES};
 use crate::settings::effects::starts::{
     FEWEST_HALF_WAVES, LEAST_LENGTH, LOWEST_FREQUENCY, MOST_HALF_WAVES, PLACES_A_HALF_WAVE,
 };
@@ -220,6 +220,24 @@ pub(crate) fn with_all_wrong_quantities(
     count: usize,
 ) -> Vec<Candidate> {
     with_departed(candidates, refitted, count, |_| true)
+}
+
+/// The same with the stiffness of every support that may have changed since a fixture was calibrated: of one
+/// that has become softer no spring beside it tells.
+pub(crate) fn with_changed_supports(candidates: &[Candidate], calibrated: &Hypothesis) -> Vec<Candidate> {
+    let changed = calibrated.tolerances().iter().enumerate().filter_map(|(index, tolerance)| {
+        let key = tolerance.quantity.key;
+        let now = tolerance.value(calibrated.departure(index));
+        matches!(key, QuantityKey::SupportStiffness(_)).then(|| Candidate {
+            kind: EffectKind::QuantityError,
+            place: Place::Quantity(tolerance.quantity.path.clone(), key),
+            dof: None,
+            starts: CHANGES_OF_SUPPORTS.map(|times| vec![times * now]).to_vec(),
+            directions: Vec::new(),
+        })
+    });
+    let changed: Vec<Candidate> = changed.collect();
+    candidates.iter().cloned().chain(changed).collect()
 }
 
 fn with_departed(

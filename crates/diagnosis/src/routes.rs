@@ -7,7 +7,7 @@ mod parts;
 
 pub(crate) use parts::{Parts, chance};
 
-use crate::departures::has_departed;
+use crate::departures::{farthest, has_departed};
 use crate::evidence::{self, explains};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
@@ -16,6 +16,7 @@ use crate::modal::ModalJudgement;
 use crate::moved_sensor::MovedSensor;
 use crate::options::{DiagnosisError, DiagnosisOptions};
 use crate::search::Search;
+use crate::settings::effects::quantities::BEYOND_BELIEF;
 use crate::settings::work::shares::OF_DOUBTS;
 use crate::{Baseline, Observation};
 use by_lines::{Start, by_lines};
@@ -178,8 +179,14 @@ fn routed(given: Given, without_effects: &Search, modal: Option<&ModalJudgement>
         return by_modes(given, without_effects, modal);
     };
     let parts = by_lines(start);
-    if parts.verdict != Verdict::Unexplained || !modal.names_all() {
+    if parts.verdict != Verdict::Unexplained {
         return parts;
+    }
+    if !modal.names_all() {
+        return match is_bent_in_vain(fitter, &parts.search.repaired) {
+            true => by_modes(given, without_effects, &modal.where_incomplete(fitter)),
+            false => parts,
+        };
     }
     let left = parts.search.refitted.chi2_per_dof(fitter.observation);
     let bent = left < evidence::explained(fitter.observation, fitter.settings);
@@ -187,6 +194,14 @@ fn routed(given: Given, without_effects: &Search, modal: Option<&ModalJudgement>
         true => by_modes(given, without_effects, modal),
         false => by_modes(given, without_effects, &modal.doubted()),
     }
+}
+
+/// Whether quantities were taken beyond all belief, and lines are far from explained all the same: what errors
+/// the modes need is worth more than where these quantities went.
+fn is_bent_in_vain(fitter: &Fitter, repaired: &Fit) -> bool {
+    let bent = farthest(&repaired.hypothesis).is_some_and(|(_, deviations)| deviations > BEYOND_BELIEF);
+    bent && repaired.chi2_per_dof(fitter.observation)
+        > evidence::explained(fitter.observation, fitter.settings)
 }
 
 /// Where lines set out from after a comparison by modes, and whether what explains the modes leaves little of

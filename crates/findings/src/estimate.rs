@@ -33,6 +33,11 @@ impl Estimate {
         Estimate { parameter, value, std: None, interval: None, unit: parameter.unit_in(dof) }
     }
 
+    /// Whether its interval, if it has one, holds its value.
+    pub fn holds_its_value(&self) -> bool {
+        self.interval.is_none_or(|[low, high]| (low..=high).contains(&self.value))
+    }
+
     /// The same known to ± `std`, its errors normal; the interval holds none but possible values: of a
     /// dashpot that may be none it begins at zero.
     pub fn within(self, std: f64) -> Self {

@@ -10,14 +10,15 @@ use crate::matching::Pairing;
 use crate::modelled::ModelledModes;
 use crate::recorded::{Offsets, RecordedModes};
 use crate::settings::errors::{
-    LEAST_SIZE, LEAST_TERM_SQUARED, USUAL_DAMPING, USUAL_FREQUENCY, USUAL_GAIN, USUAL_MASS_LINE,
-    USUAL_QUADRATURE, USUAL_SHAPE, USUAL_UPPER_RESIDUAL,
+    HELD_SHARE, LEAST_SIZE, LEAST_TERM_SQUARED, OF_LOWEST, USUAL_DAMPING, USUAL_FREQUENCY, USUAL_GAIN,
+    USUAL_MASS_LINE, USUAL_QUADRATURE, USUAL_SHAPE, USUAL_STRIKE, USUAL_UPPER_RESIDUAL,
 };
 use crate::shapes::Shapes;
+use crate::strikes::StrikeSlopes;
 use std::sync::Arc;
 
-/// Sizes of a model's error by kind, as relative standard deviations (0.003 is 0.3 %): what is known of them
-/// before, or what a recording says.
+/// Sizes of a model's error by kind, as standard deviations, relative ones (0.003 is 0.3 %) but for places:
+/// what is known of them before, or what a recording says.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ErrorSizes {
     /// Of every natural frequency.
@@ -34,17 +35,20 @@ pub struct ErrorSizes {
     pub upper_residual: f64,
     /// Of every FRF's gain, the same in all of its modes: sensors turned, hits off the point.
     pub gain: f64,
+    /// Of the place of every sensor and of every reference's impacts, m: how far beside its point it is.
+    pub strike: f64,
 }
 
 /// Number of kinds.
-pub const KINDS: usize = 7;
+pub const KINDS: usize = 8;
 /// Place of natural frequencies among them.
 pub const FREQUENCY: usize = 0;
 /// Place of damping ratios among them.
 pub const DAMPING: usize = 1;
 /// Place of shapes among them.
 pub const SHAPE: usize = 2;
-const QUADRATURE: usize = 3;
+/// Place of shapes in quadrature among them.
+pub const QUADRATURE: usize = 3;
 const MASS_LINE: usize = 4;
 /// Place of upper residuals among them.
 pub const UPPER_RESIDUAL: usize = 5;
@@ -52,11 +56,13 @@ pub const UPPER_RESIDUAL: usize = 5;
 const UPPER: usize = 1;
 /// Place of gains among them.
 pub const GAIN: usize = 6;
+/// Place of the places of sensors and impacts among them.
+pub const STRIKE: usize = 7;
 
 impl Default for ErrorSizes {
     /// What lumped models of machined parts are wrong by: 0.3 % in natural frequencies, 10 % in damping
     /// ratios, 0.5 % in shapes, 0.05 % in quadrature, 0.1 % in mass lines, 15 % in upper residuals, 1 % in
-    /// gains. Meant as the scales of half-normal priors, of gains of a half-Cauchy one: fixed beforehand, not
+    /// gains; and where hammers strike, 1 mm. Meant as the scales of half-normal priors, of gains of a half-Cauchy one: fixed beforehand, not
     /// fitted.
     fn default() -> Self {
         ErrorSizes {
@@ -67,6 +73,7 @@ impl Default for ErrorSizes {
             mass_line: USUAL_MASS_LINE,
             upper_residual: USUAL_UPPER_RESIDUAL,
             gain: USUAL_GAIN,
+            strike: USUAL_STRIKE,
         }
     }
 }
@@ -77,8 +84,9 @@ impl ErrorSizes {
 
     /// In the order of the fields.
     pub fn to_array(self) -> [f64; KINDS] {
-        let ErrorSizes { frequency, damping, shape, quadrature, mass_line, upper_residual, gain } = self;
-        [frequency, damping, shape, quadrature, mass_line, upper_residual, gain]
+        let ErrorSizes { frequency, damping, shape, quadrature, mass_line, upper_residual, gain, strike } =
+            self;
+        [frequency, damping, shape, quadrature, mass_line, upper_residual, gain, strike]
     }
 
     /// All of them times a factor.
@@ -108,8 +116,8 @@ impl ErrorSizes {
 
     /// From the order of the fields.
     pub fn from_array(sizes: [f64; KINDS]) -> Self {
-        let [frequency, damping, shape, quadrature, mass_line, upper_residual, gain] = sizes;
-        ErrorSizes { frequency, damping, shape, quadrature, mass_line, upper_residual, gain }
+        let [frequency, damping, shape, quadrature, mass_line, upper_residual, gain, strike] = sizes;
+        ErrorSizes { frequency, damping, shape, quadrature, mass_line, upper_residual, gain, strike }
     }
 }
 
@@ -141,6 +149,8 @@ pub struct SharedFeatures {
     /// What of the features in quadrature would be otherwise if the structure's damping were distributed
     /// otherwise: all of it or nothing, as one unknown of size one. Empty where that is not in question.
     distributed: Vec<(usize, f64)>,
+    /// The same if it were structural and not viscous, or the reverse.
+    structural: Vec<(usize, f64)>,
     /// Place of the first residue among the compared features.
     first_residue: usize,
     /// By kind, the covariance for a size of one.
@@ -148,6 +158,9 @@ pub struct SharedFeatures {
     /// What errors of a shape at both channels of an FRF make together, for a size of one each: of residues'
     /// real parts, and of their imaginary parts.
     both: [Entries; 2],
+    /// What displacements of sensor and impacts make of residues together, for a metre each, and what those of
+    /// either and an error of the gain make, for a metre and a size of one.
+    struck: [Entries; 2],
 }
 
 /// Entries of the lower triangle of a symmetric matrix that are not zero, by their place in it, row-major.
@@ -161,9 +174,21 @@ fn put(entries: &mut Entries, n: usize, (i, j): (usize, usize), value: f64) {
 }
 
 /// Errors of the terms below and above the band, the first of them at `first` among `n` features: as shapes'
-/// errors make them, and relative to their sizes.
-fn add_residual_terms(kinds: &mut [Entries], recorded: &RecordedModes, (n, first): (usize, usize)) {
+/// errors make them, and relative to their sizes. What is held to ground has no mass line, and what a free fit
+/// writes there, the end of a record and what a window left of it, is relative to the lowest mode.
+fn add_residual_terms(
+    kinds: &mut [Entries],
+    recorded: &RecordedModes,
+    modelled: &ModelledModes,
+    (n, first): (usize, usize),
+) {
     let frfs = recorded.frfs();
+    let squares: f64 = modelled.residual_terms.iter().map(|terms| terms[0] * terms[0]).sum();
+    let of_model = (squares / frfs as f64).sqrt();
+    let lowest = recorded.modes.first().map_or(0.0, |mode| mode.scale);
+    let held =
+        if of_model < HELD_SHARE * lowest { OF_LOWEST * lowest / recorded.residual_scales[0] } else { 0.0 };
+    let least = [LEAST_TERM_SQUARED.max(held * held), LEAST_TERM_SQUARED];
     for (e, shared) in recorded.low.iter().enumerate() {
         let place = (first + 2 * (e / frfs), first + 2 * (e % frfs));
         put(&mut kinds[SHAPE], n, place, shared / recorded.residual_scales[0].powi(2));
@@ -174,7 +199,7 @@ fn add_residual_terms(kinds: &mut [Entries], recorded: &RecordedModes, (n, first
         for (term, kind) in [(0, MASS_LINE), (UPPER, UPPER_RESIDUAL)] {
             let at = first + 2 * frf + term;
             // Relative to what is there, and where little is there to the others.
-            put(&mut kinds[kind], n, (at, at), relative(frf, term).powi(2).max(LEAST_TERM_SQUARED));
+            put(&mut kinds[kind], n, (at, at), relative(frf, term).powi(2).max(least[term]));
         }
     }
     // What a model lacks above the band it lacks in all FRFs.
@@ -261,7 +286,7 @@ impl SharedFeatures {
             }
         }
         let first = 2 * matched + 2 * matched * frfs;
-        add_residual_terms(&mut kinds, recorded, (n, first));
+        add_residual_terms(&mut kinds, recorded, modelled, (n, first));
         add_gains(&mut kinds[GAIN], recorded, (pairing, modelled), (n, first));
         kinds[DAMPING] = of_damping(n, frfs, &turned);
         SharedFeatures {
@@ -269,10 +294,58 @@ impl SharedFeatures {
             noise,
             turned,
             distributed: Vec::new(),
+            structural: of_structural_damping(recorded, (pairing, modelled)),
             first_residue: 2 * matched,
             kinds,
             both,
+            struck: [Entries::new(), Entries::new()],
         }
+    }
+
+    /// The same where sensors sit and hammers strike beside their points, with `slopes` of the model's
+    /// features by that.
+    pub fn with_strikes(
+        mut self,
+        recorded: &RecordedModes,
+        (pairing, modelled): (&Pairing, &ModelledModes),
+        slopes: &[StrikeSlopes; 2],
+    ) -> Self {
+        let (n, frfs, matched) = (self.count(), recorded.frfs(), pairing.pairs.len());
+        let first = self.first_residue + 2 * matched * frfs;
+        for side in slopes {
+            for sharing in side.sharing(recorded) {
+                let mut of_channel = Vec::new();
+                for frf in sharing {
+                    for (k, &(r, m)) in pairing.pairs.iter().enumerate() {
+                        let at = self.first_residue + 2 * k * frfs + 2 * frf;
+                        let slope = side.residue(m, frf) / recorded.modes[r].scale;
+                        of_channel.extend([(at, slope.re), (at + 1, slope.im)]);
+                    }
+                    for (term, slope) in side.terms(frf).into_iter().enumerate() {
+                        of_channel.push((first + 2 * frf + term, slope / recorded.residual_scales[term]));
+                    }
+                }
+                for &(i, a) in &of_channel {
+                    of_channel.iter().for_each(|&(j, b)| put(&mut self.kinds[STRIKE], n, (i, j), a * b));
+                }
+            }
+        }
+        let [of_sensor, of_impacts] = slopes;
+        for (k, &(r, m)) in pairing.pairs.iter().enumerate() {
+            for frf in 0..frfs {
+                let at = (self.first_residue + 2 * k * frfs + 2 * frf) * (n + 1);
+                let [residue, sensor, impacts] =
+                    [modelled.modes[m].residues[frf], of_sensor.residue(m, frf), of_impacts.residue(m, frf)]
+                        .map(|value| value.re / recorded.modes[r].scale);
+                // φ_o'·φ_i' of the residue φ_o·φ_i.
+                let together = sensor * impacts / residue;
+                if together.is_finite() {
+                    self.struck[0].push((at, together.powi(2)));
+                }
+                self.struck[1].push((at, sensor.powi(2) + impacts.powi(2)));
+            }
+        }
+        self
     }
 
     /// The same where nobody knows how the structure's damping is distributed: whether as these `shapes` of
@@ -296,9 +369,10 @@ impl SharedFeatures {
         self
     }
 
-    /// The same where the structure's damping is distributed as the model has it.
+    /// The same where the structure's damping is distributed as the model has it, and of its law.
     pub fn with_damping_as_modelled(mut self) -> Self {
         self.distributed.clear();
+        self.structural.clear();
         self
     }
 
@@ -385,11 +459,34 @@ impl SharedFeatures {
         for (both, size) in self.both.iter().zip([shape * shape, 2.0 * shape * quadrature]) {
             both.iter().for_each(|&(place, value)| sum[place] += size * value);
         }
+        let (strike, gain) = (sizes.strike.powi(2), sizes.gain.powi(2));
+        for (struck, size) in self.struck.iter().zip([strike * strike, strike * gain]) {
+            struck.iter().for_each(|&(place, value)| sum[place] += size * value);
+        }
         let n = self.count();
-        for (k, &(i, a)) in self.distributed.iter().enumerate() {
-            self.distributed[..=k].iter().for_each(|&(j, b)| sum[i * n + j] += a * b);
+        for unknown in [&self.distributed, &self.structural] {
+            for (k, &(i, a)) in unknown.iter().enumerate() {
+                unknown[..=k].iter().for_each(|&(j, b)| sum[i * n + j] += a * b);
+            }
         }
     }
+}
+
+/// What the law of the damping makes of the features. Beside its resonance a mode of structural damping,
+/// ω² − Ω² + iηω², is one of viscous damping with ζ = η/2 whose residue is turned by ζ: of 1/(ω² − Ω² + 2iζω²)
+/// and 1/(ω² − Ω² + 2iζωΩ) the difference is 2iζω(Ω − ω)/(ω² − Ω² + 2iζω²)², and Ω − ω next to ω is
+/// −(ω² − Ω²)/2ω, so that −iζ/(ω² − Ω²) is left, and what is of the order of ζ². A law that nobody stated may
+/// be either, or in part both, and is that of all modes.
+fn of_structural_damping(
+    recorded: &RecordedModes,
+    (pairing, modelled): (&Pairing, &ModelledModes),
+) -> Vec<(usize, f64)> {
+    let residues = pairing.pairs.iter().flat_map(|&(r, m)| {
+        let by = recorded.modes[r].pole.damping_ratio / recorded.modes[r].scale;
+        modelled.modes[m].residues.iter().map(move |residue| by * residue.re)
+    });
+    let first = 2 * pairing.pairs.len() + 1;
+    residues.enumerate().map(|(k, turned)| (first + 2 * k, turned)).collect()
 }
 
 /// What errors of the modes' damping make of `n` features, for a size of one, entries that are not zero by

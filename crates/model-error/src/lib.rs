@@ -19,8 +19,9 @@
 //! 3. **Pairing.** [`Pairing::of`] tells which mode of the model is which of the recording, by frequency and
 //!    shape, and what modes without a partner cost.
 //! 4. **Error.** [`ErrorSizes`] are relative standard deviations by kind: natural frequency, damping ratio,
-//!    shape (in phase and in quadrature), mass line, upper residual. [`SharedFeatures`] makes the covariance
-//!    S = noise + Σ size²·kind of them, with the model's [`Shapes`].
+//!    shape (in phase and in quadrature), mass line, upper residual; and, of the test, gains of records and
+//!    the places of sensors and impacts. [`SharedFeatures`] makes the covariance S = noise + Σ size²·kind of
+//!    them, with the model's [`Shapes`] and [`StrikeSlopes`].
 //! 5. **Evidence.** [`Linear::evidence`] gives the evidence of a model that is linear in its parameters, with
 //!    the sizes at their most probable ([`ModelEvidence`]); [`Linear::mean_sizes`] their root mean squares.
 //!
@@ -89,11 +90,13 @@ mod recording;
 mod relative;
 mod settings;
 mod shapes;
+mod strikes;
 mod structural;
 
 pub use basis::Pole;
 pub use errors::{
-    DAMPING, ErrorSizes, FREQUENCY, GAIN, KINDS, SHAPE, SharedFeatures, SizePrior, UPPER_RESIDUAL,
+    DAMPING, ErrorSizes, FREQUENCY, GAIN, KINDS, QUADRATURE, SHAPE, STRIKE, SharedFeatures, SizePrior,
+    UPPER_RESIDUAL,
 };
 pub use evidence::{Linear, ModelEvidence};
 pub use expected::Expected;
@@ -103,4 +106,5 @@ pub use poles::{ModelledMode, modes_within};
 pub use recorded::{RecordedMode, RecordedModes};
 pub use recording::WeightedFrfs;
 pub use shapes::Shapes;
+pub use strikes::StrikeSlopes;
 pub use structural::Structural;

@@ -13,7 +13,7 @@ fn distance(recorded: &[Complex64], modelled: &[Complex64]) -> f64 {
 }
 
 /// Pairs of FRFs, by place, each of which is like what the fixture makes of the other one, and neither like
-/// its own.
+/// its own, nor like that with the other sign: a sensor that was turned round is no exchange.
 pub(crate) fn exchanged(frfs: &FrfSet, modelled: &[Complex64]) -> Vec<(usize, usize)> {
     let (count, lines) = (frfs.pairs().len(), frfs.lines().len());
     if lines < FEWEST_LINES {
@@ -22,7 +22,11 @@ pub(crate) fn exchanged(frfs: &FrfSet, modelled: &[Complex64]) -> Vec<(usize, us
     let distance = |recorded: usize, model: usize| {
         distance(frfs.values(recorded), &modelled[model * lines..(model + 1) * lines])
     };
-    let own: Vec<f64> = (0..count).map(|index| distance(index, index)).collect();
+    let own = |index: usize| {
+        let reversed: Vec<Complex64> = frfs.values(index).iter().map(|value| -value).collect();
+        distance(index, index).min(self::distance(&reversed, &modelled[index * lines..(index + 1) * lines]))
+    };
+    let own: Vec<f64> = (0..count).map(own).collect();
     let mut taken = vec![false; count];
     let mut found = Vec::new();
     for a in 0..count {

@@ -147,6 +147,9 @@ fn changed_alike(change: f64) -> String {
     )
 }
 
+/// What the places of sensors and impacts are called: the one error that is a length.
+const STRIKES: &str = "places of sensors and impacts";
+
 /// One kind of a model's error, for a table or a sentence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorInWords {
@@ -164,18 +167,21 @@ pub struct ErrorInWords {
     pub large: bool,
 }
 
-/// A model's error by kind.
-pub fn error_in_words(error: &ModelError) -> [ErrorInWords; 3] {
+/// A model's error by kind, and how far beside their points sensors sat and hammers struck.
+pub fn error_in_words(error: &ModelError) -> [ErrorInWords; 4] {
     let settings = ModalSettings::default();
-    let ModelError { frequency, damping, residue, ci95, stated, usual_frequency } = error;
+    let ModelError { frequency, damping, residue, strike, ci95, stated, usual_frequency, usual_strike } =
+        error;
     let (usual, ci95) = (settings.usual, ci95.as_ref());
     let of_frequency = usual_frequency.unwrap_or(usual.frequency);
     let kinds = [
         ("natural frequency", frequency, of_frequency, stated.frequency, ci95.map(|ci| ci.frequency)),
         ("damping ratio", damping, usual.damping, stated.damping, ci95.map(|ci| ci.damping)),
-        ("residues", residue, usual.shape, stated.residue, ci95.map(|ci| ci.residue)),
+        ("residues", residue, ModelError::usual_residue(), stated.residue, ci95.map(|ci| ci.residue)),
+        (STRIKES, strike, usual_strike.unwrap_or(usual.strike), None, ci95.map(|ci| ci.strike)),
     ];
     kinds.map(|(kind, size, usual, stated, interval)| {
+        let short = if kind == STRIKES { millimetres } else { short };
         let usual = stated.unwrap_or(usual);
         let seen = (*size > 0.0).then(|| short(*size));
         let with_interval = match (&seen, interval) {
@@ -243,6 +249,11 @@ fn farthest_quantity(diagnosis: &Diagnosis) -> String {
             significant(deviations, 2)
         )
     })
+}
+
+/// Two digits of a length in m, as millimetres.
+fn millimetres(length: f64) -> String {
+    format!("{} mm", significant(1e3 * length, 2))
 }
 
 /// Two digits of a per cent, without the zeros that say nothing.
@@ -444,10 +455,18 @@ mod tests {
     #[test]
     fn an_interval_stands_beside_a_size_and_beside_none() {
         let interval = [0.001, 0.004];
-        let ci95 = ErrorIntervals { frequency: interval, damping: [0.0, 0.05], residue: [0.01; 2] };
-        let error = ModelError { ci95: Some(ci95), ..error(0.002, 0.0, 0.01) };
+        let ci95 = ErrorIntervals {
+            frequency: interval,
+            damping: [0.0, 0.05],
+            residue: [0.01; 2],
+            strike: [4e-4, 0.0023],
+        };
+        let error = ModelError { ci95: Some(ci95), strike: 0.0011, ..error(0.002, 0.0, 0.01) };
         let told = error_in_words(&error).map(|error| error.with_interval);
-        assert_eq!(told, ["0.2 % (0.1 % to 0.4 %)", "none seen (below 5 %)", "1 %"]);
+        let strike = "1.1 mm (0.40 mm to 2.3 mm)";
+        assert_eq!(told, ["0.2 % (0.1 % to 0.4 %)", "none seen (below 5 %)", "1 %", strike]);
+        let off = "0.2 % in natural frequency, 1 % in residues and 1.1 mm in places of sensors and impacts";
+        assert_eq!(sizes(&error), off);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! A fixture compared with a recording by modes, or with what has changed since a baseline.
 
 use crate::candidate::Candidate;
-use crate::catalogue::with_wrong_quantities;
+use crate::catalogue::{with_changed_supports, with_wrong_quantities};
 use crate::fitter::Fitter;
 use crate::modal::beside_lines::fitted_to_lines;
 use crate::modal::changes::States;
@@ -16,6 +16,7 @@ use crate::{Hypothesis, ModeChange, Observation};
 use jointscope_fixture::Effect;
 use jointscope_model_error::{ErrorSizes, KINDS, Pairing, SizePrior};
 use std::collections::BTreeSet;
+use std::f64::consts::SQRT_2;
 
 /// What a baseline says of the fixture.
 #[derive(Debug, Clone)]
@@ -117,12 +118,15 @@ impl ModalJudgement {
         let change = now.relative_to(&before.recorded, model, [&own, &calibrated.paired.pairing])?;
         // What is stated is the error that both states share; the change has its own.
         let shared = before.known.scales;
-        let scales = ErrorSizes { gain: shared.gain, ..settings.modal.repeated };
+        // Sensors sit and hammers strike beside their points in both.
+        let strike = SQRT_2 * shared.strike;
+        let scales = ErrorSizes { gain: shared.gain, strike, ..settings.modal.repeated };
         let features = Features::new(change, SizePrior { scales, stated: [false; KINDS] });
         let nominal = &calibrated.hypothesis;
+        let candidates = with_changed_supports(candidates, nominal);
         let searcher = Searcher {
             problem: features.problem(observation.work()),
-            candidates,
+            candidates: &candidates,
             nominal,
             settings: &settings.modal,
             known: None,

@@ -2,7 +2,7 @@
 //! held against.
 
 use crate::modal::problem::Problem;
-use crate::modal::sizes::known;
+use crate::modal::sizes::{known, with_strikes_as_stated};
 use crate::settings::ModalSettings;
 use crate::settings::modal::recorded::SPARE_ORDERS;
 use crate::work::Work;
@@ -32,7 +32,8 @@ impl Features {
         settings: &ModalSettings,
     ) -> Option<Self> {
         let fixture = nominal.to_fixture().ok()?;
-        let features = Features::new(recorded(observation, nominal)?, known(settings, &fixture));
+        let known = with_strikes_as_stated(known(settings, &fixture), &fixture, observation.pairs());
+        let features = Features::new(recorded(observation, nominal)?, known);
         let damps = |dashpot: &Option<Quantity>| dashpot.as_ref().is_some_and(|damping| damping.value > 0.0);
         let mut supports = fixture.supports().iter();
         let held_by_dashpots = supports.any(|s| damps(&s.damping) || damps(&s.rotational_damping));

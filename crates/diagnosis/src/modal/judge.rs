@@ -8,6 +8,7 @@ use crate::modal::judgement::ModalJudgement;
 use crate::modal::places::Places;
 use crate::modal::search::ModalSearch;
 use crate::modal::searcher::{Named, Searcher};
+use crate::settings::modal::sizes::STANDING_SHAPE;
 use jointscope_findings::Verdict;
 use jointscope_fixture::Entry;
 
@@ -77,7 +78,7 @@ impl Judge<'_> {
 
     fn verdict(&self) -> Verdict {
         let (none, best) = (&self.search.none, &self.search.best);
-        let adequate = self.searcher.is_adequate(&best.fit) || self.outweighs_adequate_fixture();
+        let adequate = self.searcher.stands(&best.fit) || self.outweighs_adequate_fixture();
         // Of a recording that no poles explain, names say nothing, but for what has changed since another one
         // like it.
         let hopeless = self.searcher.problem.recorded.chi2_per_dof > self.searcher.settings.hopeless;
@@ -118,13 +119,10 @@ impl Judge<'_> {
     fn outweighs_adequate_fixture(&self) -> bool {
         let (none, best) = (&self.search.none, &self.search.best);
         let (largest, departure) = self.searcher.settings.adequate;
-        if best.names.is_empty()
-            || best.fit.largest_departure() > departure
-            || !self.searcher.is_adequate(none)
-        {
+        if best.names.is_empty() || best.fit.largest_departure() > departure || !self.searcher.stands(none) {
             return false;
         }
-        let usual = self.searcher.problem.no_larger(&best.fit, largest);
+        let usual = self.searcher.problem.no_larger(&best.fit, (largest, STANDING_SHAPE));
         let density = |sizes| best.fit.linear.ln_density(&best.fit.paired.comparison, sizes);
         let Some((before, now)) = density(&best.fit.evidence.sizes).zip(density(&usual)) else {
             return false;
@@ -191,7 +189,7 @@ impl Judge<'_> {
         let problem = &self.searcher.problem;
         let sizes = match is_of_signals(best) {
             true => self.made_up_for_by_signals(best),
-            false => problem.relative_sizes_as_stated(best),
+            false => problem.relative_sizes_as_stated(best, STANDING_SHAPE),
         };
         let errors: f64 = sizes.iter().map(|s| 0.5 * (s * s - 1.0).max(0.0)).sum();
         let departures =

@@ -4,6 +4,7 @@ use crate::candidate::Candidate;
 use crate::estimates::estimates;
 use crate::finding::{Finding, FrfEvidence, Tried};
 use crate::fit::Fit;
+use crate::fitter::Fitter;
 use crate::modal::features::Features;
 use crate::modal::known::Known;
 use crate::modal::places::Places;
@@ -14,7 +15,7 @@ use crate::search::Search;
 use crate::settings::ModalSettings;
 use crate::settings::modal::judgement::AT_ODDS;
 use crate::{Hypothesis, Observation};
-use jointscope_findings::Verdict;
+use jointscope_findings::{Estimate, Verdict};
 use jointscope_fixture::Effect;
 use jointscope_inference::Covariance;
 
@@ -80,6 +81,17 @@ impl ModalJudgement {
             all.iter().map(|(name, p, hypothesis)| (*name, share * p, hypothesis.clone())).collect()
         });
         ModalJudgement { verdict: Verdict::PartlyExplained, names: names.collect(), ..self.clone() }
+    }
+
+    /// The same where lines find nothing either, and modes may not tell all there is: what a free fit leaves of
+    /// the recording, or a mode of its own, is no error of a model that is usual.
+    pub(crate) fn where_incomplete(&self, fitter: &Fitter) -> Self {
+        let leaves = self.free_fit_chi2_per_dof > fitter.settings.modal.slight;
+        let alone = self.search.best.fit.paired.pairing.alone() != 0.0;
+        match self.verdict == Verdict::Consistent && (leaves || alone) {
+            true => self.withdrawn(),
+            false => self.clone(),
+        }
     }
 
     /// Whether the modes need nothing, neither an effect nor an error of the model: what is left, if
@@ -168,6 +180,9 @@ impl ModalJudgement {
             };
             let places = self.places.get(index)?;
             let along = places.own.as_ref().map(|along| along.estimates(hypothesis, index, &effect));
+            // Beside other effects what is stated is the most probable place, and may lie outside the middle of
+            // its ridge.
+            let along = along.filter(|all| all.iter().all(Estimate::holds_its_value));
             let linear = || estimates(hypothesis, index, &effect, covariance.as_ref(), 1.0);
             Some(Finding {
                 estimates: along.unwrap_or_else(linear),

@@ -8,7 +8,7 @@ use crate::settings::work::costs::{FOLLOWED_POLES, SEARCHED_POLES};
 use crate::work::Work;
 use jointscope_fixture::Fixture;
 use jointscope_model_error::{
-    ErrorSizes, KINDS, ModelledModes, Pairing, RecordedModes, Shapes, SharedFeatures, SizePrior,
+    ErrorSizes, KINDS, ModelledModes, Pairing, RecordedModes, Shapes, SharedFeatures, SizePrior, StrikeSlopes,
 };
 
 /// The recording's modes and what is known of the model's error.
@@ -64,6 +64,10 @@ impl Problem<'_> {
         let shapes = |fixture: &Fixture| Shapes::of(fixture, self.recorded, &modelled.poles());
         let own = shapes(fixture)?;
         let mut comparison = SharedFeatures::new(self.recorded, &pairing, &modelled, &own);
+        self.work.count(2 * FOLLOWED_POLES * self.recorded.frfs());
+        if let Some(slopes) = StrikeSlopes::of(fixture, self.recorded, &modelled) {
+            comparison = comparison.with_strikes(self.recorded, (&pairing, &modelled), &slopes);
+        }
         // Dashpots turn phases as the fixture has them, or, if its damping is that of the modes as they
         // stand, not at all; and its damping is no proportional one of a structure with effects. Which of
         // both it is, if either, nobody knows.

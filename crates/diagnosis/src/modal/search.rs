@@ -3,6 +3,7 @@
 use crate::modal::extended::best_of_each;
 use crate::modal::fit::{ANY, ModalFit, SetOut};
 use crate::modal::searcher::{Named, STARTS, Searcher};
+use crate::settings::modal::sizes::DISTURBED;
 
 /// The outcome of a search among modes.
 #[derive(Debug, Clone)]
@@ -177,7 +178,15 @@ impl Searcher<'_> {
 
     /// Whether a hypothesis gains what it has to over one that states less.
     fn gains(&self, more: &Named, fewer: &Named) -> bool {
-        more.fit.ln - fewer.fit.ln > self.needed_over(fewer, more)
+        more.fit.ln - fewer.fit.ln > self.needed_over(fewer, more) && !self.disturbs_gains(more, fewer)
+    }
+
+    /// Whether a hypothesis takes gains of records farther off than any are that fewer effects leave where they
+    /// belong: these may be of any size, and with residues free what suits mass lines and upper residuals
+    /// alone gains by it, a hammer that became 5.7 times as sensitive for instance.
+    fn disturbs_gains(&self, more: &Named, fewer: &Named) -> bool {
+        let [with, without] = [more, fewer].map(|named| named.fit.evidence.sizes.gain);
+        more.fit.has_gains_beyond(self.problem.sizes) && with > DISTURBED * without
     }
 
     /// The best with one effect more, or with a kind more at every joint, the most probable first. Where two

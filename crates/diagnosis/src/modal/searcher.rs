@@ -136,6 +136,11 @@ impl Searcher<'_> {
         self.problem.is_adequate(fit, self.settings.adequate)
     }
 
+    /// Whether a verdict may rest on it.
+    pub(super) fn stands(&self, fit: &ModalFit) -> bool {
+        self.problem.stands(fit, self.settings.adequate)
+    }
+
     /// Whether the evidence is hardly less without any error of the model.
     pub(super) fn is_exact(&self, fit: &ModalFit) -> bool {
         self.problem.is_exact(fit, self.settings.exact)

@@ -3,15 +3,19 @@
 use crate::modal::fit::ModalFit;
 use crate::modal::problem::Problem;
 use crate::settings::ModalSettings;
-use crate::settings::modal::sizes::{AS_PROBABLE, BEYOND_ERRORS, LEAST_OF_STATED_DAMPING, NEGLIGIBLE};
-use jointscope_fixture::{Fixture, Place, StatedError};
-use jointscope_model_error::{
-    DAMPING, ErrorSizes, FREQUENCY, GAIN, KINDS, ModelEvidence, SHAPE, SizePrior, UPPER_RESIDUAL,
+use crate::settings::modal::sizes::{
+    AS_PROBABLE, BEYOND_ERRORS, LEAST_OF_STATED_DAMPING, NEGLIGIBLE, STANDING_SHAPE,
 };
+use jointscope_fixture::{Fixture, Place, Spread, StatedError};
+use jointscope_model_error::{
+    DAMPING, ErrorSizes, FREQUENCY, GAIN, KINDS, ModelEvidence, QUADRATURE, SHAPE, STRIKE, SizePrior,
+    UPPER_RESIDUAL,
+};
+use jointscope_spectra::{Channel, FrfPair};
 use serde::Serialize;
 
-/// How wrong a model is, as relative standard deviations over its modes; zero where the noise explains what
-/// is left.
+/// How wrong a model is, as relative standard deviations over its modes, and how far beside their points
+/// sensors sat and hammers struck; zero where the noise explains what is left.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct ModelError {
     /// Of natural frequencies.
@@ -20,6 +24,8 @@ pub struct ModelError {
     pub damping: f64,
     /// Of residues, that is of shapes.
     pub residue: f64,
+    /// Of the places of sensors and impacts, m.
+    pub strike: f64,
     /// How well these are known; `None` where nothing was estimated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ci95: Option<ErrorIntervals>,
@@ -29,6 +35,9 @@ pub struct ModelError {
     /// What such a model's natural frequencies are usually wrong by, where that is more than those of most.
     #[serde(skip)]
     pub usual_frequency: Option<f64>,
+    /// How far beside their points sensors and impacts usually are by what is stated of these, m.
+    #[serde(skip)]
+    pub usual_strike: Option<f64>,
 }
 
 /// Intervals that hold the sizes of a model's error with a probability of 95 %.
@@ -40,12 +49,19 @@ pub struct ErrorIntervals {
     pub damping: [f64; 2],
     /// Of residues.
     pub residue: [f64; 2],
+    /// Of the places of sensors and impacts, m.
+    pub strike: [f64; 2],
 }
 
 impl ModelError {
+    /// What residues of models that stand are usually wrong by.
+    pub fn usual_residue() -> f64 {
+        STANDING_SHAPE * ErrorSizes::default().shape
+    }
+
     /// Whether the noise explains what is left.
     pub fn is_none(&self) -> bool {
-        [self.frequency, self.damping, self.residue] == [0.0; 3]
+        [self.frequency, self.damping, self.residue, self.strike] == [0.0; 4]
     }
 }
 
@@ -57,6 +73,27 @@ fn all_bend(fixture: &Fixture) -> bool {
 /// Whether all bodies are storeys of a shear building.
 fn none_turns(fixture: &Fixture) -> bool {
     fixture.bodies().iter().all(|body| !body.kind.rotates())
+}
+
+/// The same of channels at points of a fixture: who states how well a point's place is known, knows where it was
+/// struck as well.
+pub(super) fn with_strikes_as_stated(
+    mut known: SizePrior,
+    fixture: &Fixture,
+    pairs: &[FrfPair],
+) -> SizePrior {
+    if known.stated[STRIKE] {
+        return known;
+    }
+    let usual = known.scales.strike;
+    let squared = |channel: &Channel| match fixture.point(&channel.point).map(|point| point.x.spread) {
+        Some(Spread::Stated(deviation)) => deviation.powi(2),
+        _ => usual * usual,
+    };
+    let all = pairs.iter().flat_map(|pair| [squared(&pair.response), squared(&pair.reference)]);
+    let mean = all.sum::<f64>() / (2 * pairs.len()).max(1) as f64;
+    known.scales.strike = mean.sqrt().max(ErrorSizes::LEAST * usual);
+    known
 }
 
 /// The sizes that are usual but for those that the fixture states.
@@ -81,7 +118,11 @@ pub(super) fn known(settings: &ModalSettings, fixture: &Fixture) -> SizePrior {
         gain: fixture.record_gain().unwrap_or(gain),
         ..usual
     };
+    // Who states what residues are wrong by, states all that they are.
+    let strike = if residue.is_some() { ErrorSizes::LEAST * usual.strike } else { usual.strike };
+    let scales = ErrorSizes { strike, ..scales };
     let mut stated = [false; KINDS];
+    stated[STRIKE] = residue.is_some();
     stated[FREQUENCY] = frequency.is_some();
     stated[DAMPING] = damping.is_some();
     stated[SHAPE] = residue.is_some();
@@ -112,9 +153,19 @@ impl Problem<'_> {
     /// deviations, is no more than `adequate`, and what these leave of the features is chance: of a mass line
     /// that is off by a dozen times what is usual, errors of nothing are as probable as ones that large.
     pub(crate) fn is_adequate(&self, fit: &ModalFit, adequate: (f64, f64)) -> bool {
+        self.holds(fit, adequate, 1.0)
+    }
+
+    /// The same of a verdict, for which so many times the usual error of shapes is usual: an adequate fit is
+    /// searched for by the usual one, and one that stands is refuted by no less.
+    pub(crate) fn stands(&self, fit: &ModalFit, adequate: (f64, f64)) -> bool {
+        self.holds(fit, adequate, STANDING_SHAPE)
+    }
+
+    fn holds(&self, fit: &ModalFit, adequate: (f64, f64), shapes: f64) -> bool {
+        let largest = || self.relative_sizes_as_stated(fit, shapes).into_iter().fold(0.0, f64::max);
         fit.largest_departure() <= adequate.1
-            && (self.largest_size(fit) <= adequate.0
-                || self.is_as_probable_with_errors_within(adequate.0, fit))
+            && (largest() <= adequate.0 || self.is_as_probable_with_errors_within((adequate.0, shapes), fit))
             && fit.leaves_chance()
     }
 
@@ -123,7 +174,7 @@ impl Problem<'_> {
     /// a size is known to some tenths of itself only, the less the fewer modes there are. What may lose more,
     /// but less than it gained over a fixture that is adequate, is asked by `outweighs_adequate_fixture` of
     /// `judge.rs`.
-    fn is_as_probable_with_errors_within(&self, most: f64, fit: &ModalFit) -> bool {
+    fn is_as_probable_with_errors_within(&self, most: (f64, f64), fit: &ModalFit) -> bool {
         let at = |sizes: &ErrorSizes| fit.linear.ln_evidence_at(&fit.paired.comparison, self.prior(), sizes);
         let both = at(&fit.evidence.sizes).zip(at(&self.no_larger(fit, most)));
         both.is_some_and(|(asked, held)| asked - held < AS_PROBABLE)
@@ -142,17 +193,16 @@ impl Problem<'_> {
         fit.paired.pairing.alone() == 0.0 && gained() < gain
     }
 
-    /// The largest size of an error, as a multiple of what is usual.
-    fn largest_size(&self, fit: &ModalFit) -> f64 {
-        self.relative_sizes_as_stated(fit).into_iter().fold(0.0, f64::max)
-    }
-
     /// The sizes of [`Problem::relative_sizes`] by which a hypothesis stands or falls: none of upper
-    /// residuals beside effects where bodies are rigid; that of damping ratios by no less than a share of
+    /// residuals beside effects where bodies are rigid; that of shapes, if it is not stated, by so many times (`shapes`)
+    /// what is usual; that of damping ratios by no less than a share of
     /// what the fixture states as their deviations. Where effects have made other modes than those of which
     /// it states ratios, by no less than the whole: these get theirs from the others' damping.
-    pub(crate) fn relative_sizes_as_stated(&self, fit: &ModalFit) -> Vec<f64> {
+    pub(crate) fn relative_sizes_as_stated(&self, fit: &ModalFit, shapes: f64) -> Vec<f64> {
         let mut sizes = self.relative_sizes(fit);
+        if !self.stated[SHAPE] {
+            [SHAPE, QUADRATURE].into_iter().for_each(|kind| sizes[kind] /= shapes);
+        }
         let stated = fit.hypothesis.deviation_of_damping();
         let usual = if fit.hypothesis.has_other_modes() { stated } else { LEAST_OF_STATED_DAMPING * stated };
         if usual > self.sizes.damping {
@@ -168,9 +218,9 @@ impl Problem<'_> {
 
     /// The sizes of error of a fit, none of those by which it stands or falls larger than so many times what
     /// is usual.
-    pub(crate) fn no_larger(&self, fit: &ModalFit, most: f64) -> ErrorSizes {
+    pub(crate) fn no_larger(&self, fit: &ModalFit, (most, shapes): (f64, f64)) -> ErrorSizes {
         let mut sizes = fit.evidence.sizes.to_array();
-        for (size, relative) in sizes.iter_mut().zip(self.relative_sizes_as_stated(fit)) {
+        for (size, relative) in sizes.iter_mut().zip(self.relative_sizes_as_stated(fit, shapes)) {
             *size *= (most / relative.max(f64::MIN_POSITIVE)).min(1.0);
         }
         ErrorSizes::from_array(sizes)
@@ -230,10 +280,12 @@ impl Problem<'_> {
             frequency: size(FREQUENCY),
             damping: size(DAMPING),
             residue: size(SHAPE),
+            strike: if self.stated[STRIKE] { 0.0 } else { size(STRIKE) },
             ci95: Some(ErrorIntervals {
                 frequency: interval(FREQUENCY),
                 damping: interval(DAMPING),
                 residue: interval(SHAPE),
+                strike: interval(STRIKE),
             }),
             stated: StatedError {
                 frequency: stated(FREQUENCY),
@@ -241,6 +293,7 @@ impl Problem<'_> {
                 residue: stated(SHAPE),
             },
             usual_frequency: none_turns(fit.hypothesis.fixture()).then_some(sizes[FREQUENCY]),
+            usual_strike: Some(sizes[STRIKE]),
         }
     }
 }

@@ -121,7 +121,7 @@ fn what_is_left_above_the_band_holds_nothing_against_a_name_of_rigid_blocks() {
         let priors = priors_among(hypothesis, &candidates).unwrap();
         let mut fit = problem.fitted(hypothesis, &priors).unwrap();
         fit.evidence.sizes.upper_residual = 3.0 * usual(&blocks);
-        problem.relative_sizes_as_stated(&fit)[UPPER_RESIDUAL]
+        problem.relative_sizes_as_stated(&fit, 1.0)[UPPER_RESIDUAL]
     };
     assert!((large_above(&nominal) - 3.0).abs() < 1e-9, "the fixture alone is not called consistent");
     assert_eq!(large_above(&nominal.with(lump)), 0.0);
@@ -150,9 +150,9 @@ fn errors_are_held_to_a_multiple_of_what_is_usual_kind_by_kind() {
     let problem = features.problem(observation.work());
     let mut fit = problem.fitted(&nominal, &priors(&nominal, &[])).unwrap();
     let usual = features.known.scales;
-    fit.evidence.sizes = ErrorSizes { frequency: 1.5 * usual.frequency, shape: 3.0 * usual.shape, ..usual };
-    let held = problem.no_larger(&fit, 2.0);
-    let expected = ErrorSizes { shape: 2.0 * usual.shape, ..fit.evidence.sizes };
+    fit.evidence.sizes = ErrorSizes { frequency: 1.5 * usual.frequency, shape: 9.0 * usual.shape, ..usual };
+    let held = problem.no_larger(&fit, (2.0, 3.0));
+    let expected = ErrorSizes { shape: 6.0 * usual.shape, ..fit.evidence.sizes };
     let pairs = held.to_array().into_iter().zip(expected.to_array());
     assert!(pairs.clone().all(|(held, expected)| (held / expected - 1.0).abs() < 1e-12), "{held:?}");
 }

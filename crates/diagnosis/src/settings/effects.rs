@@ -5,9 +5,14 @@ pub(crate) mod quantities {
     /// Standard deviations beyond which a quantity has departed by more than chance makes: once in sixteen
     /// thousand.
     pub(crate) const DEPARTED: f64 = 4.0;
+    /// Standard deviations beyond which nobody believes a quantity where lines are not explained for it: a
+    /// bungee of 200 N/m was to have 11.7 kN/m, 460 deviations off, and a point mass 220.
+    pub(crate) const BEYOND_BELIEF: f64 = 10.0;
     /// Departures from which a search for a wrong quantity sets out, as multiples of that which the refit
     /// made: what else it bent was bent in its stead.
     pub(crate) const DEPARTURES: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
+    /// Factors by which the stiffness of a support may have changed since a baseline, to set out from.
+    pub(crate) const CHANGES_OF_SUPPORTS: [f64; 5] = [0.3, 0.55, 0.8, 1.25, 2.0];
     /// Least standard deviation of a quantity that is wrong, in stated ones: a slip of the calliper or the
     /// scales is many of them. One that sets out farther, as a wrong sign or decimal point asks for, may lie
     /// anywhere that far: a narrower expectation would bend the rest of the fixture to bring it back.

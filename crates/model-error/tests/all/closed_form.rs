@@ -1,7 +1,7 @@
 //! Features of two masses on a spring against the textbook.
 
 use crate::common::*;
-use jointscope_fixture::Fixture;
+use jointscope_fixture::{Damping, Fixture, Quantity};
 use jointscope_model_error::{
     ErrorSizes, ModelledModes, Pairing, Pole, Shapes, SharedFeatures, modes_within,
 };
@@ -135,11 +135,11 @@ fn an_error_of_the_shape_moves_residues_by_both_channels() {
     let fixture = two_masses(0.01, "");
     let compared = Compared::of(&fixture, Recorded::of(&fixture, &pairs, &lines(600.0), noise(None)).modes());
     let n = compared.comparison.count();
+    let none = no_error();
     let of = |sizes| {
         let with = compared.covariance(&sizes);
-        with.iter().zip(compared.noise()).map(|(a, b)| a - b).collect::<Vec<f64>>()
+        with.iter().zip(compared.covariance(&none)).map(|(a, b)| a - b).collect::<Vec<f64>>()
     };
-    let none = ErrorSizes::from_array([0.0; 7]);
     let (a, b) = shape();
     let rms = ((a * a + b * b) / 2.0).sqrt();
     let scale = compared.recorded.modes[0].scale;
@@ -181,8 +181,8 @@ fn what_a_model_lacks_above_the_band_it_lacks_in_all_frfs_and_in_each() {
     let fixture = blocks("");
     let compared = Compared::of(&fixture, Recorded::of(&fixture, &pairs, &lines(600.0), noise(None)).modes());
     let n = compared.comparison.count();
-    let sizes = ErrorSizes { upper_residual: 0.1, ..ErrorSizes::from_array([0.0; 7]) };
-    let (with, without) = (compared.covariance(&sizes), compared.noise());
+    let sizes = ErrorSizes { upper_residual: 0.1, ..no_error() };
+    let (with, without) = (compared.covariance(&sizes), compared.covariance(&no_error()));
     let features = compared.recorded.features();
     let above = &features[features.len() - 6..];
     let of = |i: usize, j: usize| {
@@ -211,8 +211,8 @@ fn an_error_of_the_damping_is_one_of_ratios_and_of_what_is_in_quadrature() {
     let compared = Compared::of(&fixture, Recorded::of(&fixture, &pairs, &lines(600.0), noise(None)).modes());
     assert_eq!(compared.pairing.pairs.len(), 2);
     let n = compared.comparison.count();
-    let sizes = ErrorSizes { damping: 1.0, ..ErrorSizes::from_array([0.0; 7]) };
-    let (with, without) = (compared.covariance(&sizes), compared.noise());
+    let sizes = ErrorSizes { damping: 1.0, ..no_error() };
+    let (with, without) = (compared.covariance(&sizes), compared.covariance(&no_error()));
     // What a common error of both modes' damping makes of each feature.
     let of_all = |feature: usize| -> f64 {
         [1, 3].iter().map(|ratio| with[ratio * n + feature] - without[ratio * n + feature]).sum()
@@ -235,6 +235,27 @@ fn an_error_of_the_damping_is_one_of_ratios_and_of_what_is_in_quadrature() {
 }
 
 #[test]
+fn structural_damping_turns_the_residues_of_a_viscous_mode_by_its_damping_ratio() {
+    let viscous = two_masses(0.01, "");
+    let structural = viscous.clone().with_damping(Damping::LossFactor(Quantity::bare(0.02))).unwrap();
+    let pairs = pairs(&[("1", "1"), ("2", "1"), ("2", "2")]);
+    let recorded = Recorded::of(&structural, &pairs, &lines(600.0), noise(None)).modes();
+    let compared = Compared::of(&viscous, recorded);
+    let (law, noise) = (compared.covariance(&no_error()), compared.noise());
+    let (n, difference, model) = (compared.comparison.count(), compared.difference(), compared.model());
+    for a in 0..3 {
+        let (real, imaginary) = (2 + 2 * a, 3 + 2 * a);
+        let turned = difference[imaginary] / model[real];
+        assert!((turned / -0.01 - 1.0).abs() < 0.03, "FRF {a}: {turned}");
+        for b in 0..3 {
+            let entry = law[imaginary * n + 3 + 2 * b] - noise[imaginary * n + 3 + 2 * b];
+            let expected = 1e-4 * model[real] * model[2 + 2 * b];
+            assert!((entry / expected - 1.0).abs() < 0.01, "FRFs {a} and {b}: {entry}, expected {expected}");
+        }
+    }
+}
+
+#[test]
 fn an_error_of_the_shape_of_a_suspension_mode_is_one_of_mass_lines() {
     // Both masses at 14 Hz on one spring, below the lowest line: φ² = 1/(5 kg), and so are mass lines.
     let stiffness = 5.0 * (TAU * 14.0).powi(2);
@@ -245,7 +266,7 @@ fn an_error_of_the_shape_of_a_suspension_mode_is_one_of_mass_lines() {
     let recorded = Recorded::of(&fixture, &pairs, &lines(600.0), noise(None)).modes();
     let compared = Compared::of(&fixture, recorded.beside(&fixture));
     assert_eq!((compared.modelled.modes.len(), compared.recorded.modes.len()), (2, 1));
-    let sizes = ErrorSizes { shape: 1.0, ..ErrorSizes::from_array([0.0; 7]) };
+    let sizes = ErrorSizes { shape: 1.0, ..no_error() };
     let (with, without, n) = (compared.covariance(&sizes), compared.noise(), compared.comparison.count());
     let first = n - 4;
     for (i, row) in [[4.0, 2.0], [2.0, 2.0]].iter().enumerate() {
@@ -285,7 +306,7 @@ proptest! {
     }
 
     #[test]
-    fn sizes_go_to_an_array_and_back(sizes in prop::array::uniform7(0.0..1.0f64)) {
+    fn sizes_go_to_an_array_and_back(sizes in prop::array::uniform8(0.0..1.0f64)) {
         prop_assert_eq!(ErrorSizes::from_array(sizes).to_array(), sizes);
     }
 }

@@ -153,6 +153,19 @@ pub(crate) fn normal(random: &mut ChaCha8Rng) -> f64 {
     circular(random).re * 2f64.sqrt()
 }
 
+/// A model without errors.
+pub(crate) fn no_error() -> ErrorSizes {
+    ErrorSizes::from_array([0.0; 8])
+}
+
+fn both_triangles(comparison: &SharedFeatures, sizes: &ErrorSizes) -> Vec<f64> {
+    let (n, mut whole) = (comparison.count(), comparison.covariance(sizes));
+    for i in 0..n {
+        (0..i).for_each(|j| whole[j * n + i] = whole[i * n + j]);
+    }
+    whole
+}
+
 /// A recording's modes compared with those of a model.
 pub(crate) struct Compared {
     pub recorded: RecordedModes,
@@ -184,16 +197,12 @@ impl Compared {
 
     /// Covariance of the features of a model whose error has these sizes, both triangles.
     pub(crate) fn covariance(&self, sizes: &ErrorSizes) -> Vec<f64> {
-        let (n, mut whole) = (self.comparison.count(), self.comparison.covariance(sizes));
-        for i in 0..n {
-            (0..i).for_each(|j| whole[j * n + i] = whole[i * n + j]);
-        }
-        whole
+        both_triangles(&self.comparison, sizes)
     }
 
     /// Covariance of the recorded features.
     pub(crate) fn noise(&self) -> Vec<f64> {
-        self.covariance(&ErrorSizes::from_array([0.0; 7]))
+        both_triangles(&self.comparison.clone().with_damping_as_modelled(), &no_error())
     }
 
     /// What each compared feature is: its kind, and its name for messages.

@@ -21,7 +21,7 @@ static NINE: LazyLock<Compared> = LazyLock::new(|| {
 /// Differences drawn from the noise of the nine modes' features, the frequencies' with an error besides.
 fn drawn(frequency_error: f64, seed: u64) -> Linear {
     let n = NINE.comparison.count();
-    let sizes = ErrorSizes::from_array([0.0; 7]);
+    let sizes = ErrorSizes::from_array([0.0; 8]);
     let covariance = NINE.covariance(&ErrorSizes { frequency: frequency_error, ..sizes });
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let white: Vec<f64> = (0..n).map(|_| normal(&mut random)).collect();
@@ -183,7 +183,7 @@ proptest! {
 
     #[test]
     fn the_density_is_the_normal_one(
-        times in prop::array::uniform7(0.0..3.0f64),
+        times in prop::array::uniform8(0.0..3.0f64),
         values in prop::collection::vec(-0.01..0.01f64, 64),
         slopes in prop::collection::vec(prop::collection::vec(-0.01..0.01f64, 64), 0..3),
     ) {

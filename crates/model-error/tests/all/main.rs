@@ -7,4 +7,5 @@ mod common;
 mod effects;
 mod evidence;
 mod pairing;
+mod strikes;
 mod structural;

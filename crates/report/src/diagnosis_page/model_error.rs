@@ -25,8 +25,8 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
         .words("usual", |(refitted, _)| known(refitted))
         .marked(|(_, repaired)| repaired.large.then_some(Tone::Attention))
         .footnote(
-            "Standard deviations over the modes in the band, relative, with their intervals of 95 %; of residues relative to the mode's root mean square. What the \
-             fixture states is taken as it is. Marked: more than twice the usual or stated, which no adequate model has.",
+            "Standard deviations over the modes in the band, relative, with their intervals of 95 %; of residues relative to the mode's root mean square; of places how far \
+             beside their points sensors sit and hammers strike. What the fixture states is taken as it is. Marked: more than twice the usual or stated, which no adequate model has.",
         );
     let words = if has_findings {
         "The model's own error is larger than the noise of the FRFs, so the hypotheses were compared by modes: a finding is needed where it makes \
