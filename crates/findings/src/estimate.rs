@@ -94,4 +94,12 @@ mod tests {
         assert_eq!(of(EffectKind::AttachedResonator, "damping_ratio"), Some([0.0, upper]));
         assert_eq!(of(EffectKind::PointOffset, "dx"), Some([0.002 - Z95 * 0.01, upper]));
     }
+
+    #[test]
+    fn a_value_beside_its_interval_is_seen() {
+        let dx = EffectKind::PointOffset.spec().parameters[0];
+        let told = Estimate::of(dx, None, 0.002);
+        assert!(told.holds_its_value() && told.within(0.01).holds_its_value());
+        assert!(!Estimate { interval: Some([0.003, 0.004]), ..told }.holds_its_value());
+    }
 }

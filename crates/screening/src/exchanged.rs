@@ -86,3 +86,22 @@ pub(crate) fn swapped(
         is_right.then(|| (a.to_string(), b.to_string(), labels))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jointscope_spectra::{FrfForm, SpectralLines};
+
+    #[test]
+    fn a_sensor_that_was_turned_round_is_no_exchange_of_frfs_of_opposite_sign() {
+        // To impacts on either side of a node a sensor answers with opposite signs.
+        let count = 2 * FEWEST_LINES;
+        let one: Vec<Complex64> = (0..count).map(|k| Complex64::new(1.0 + 0.01 * k as f64, 0.1)).collect();
+        let modelled: Vec<Complex64> = one.iter().copied().chain(one.iter().map(|v| -1.05 * v)).collect();
+        let pairs = vec![FrfPair::transverse("6", "1"), FrfPair::transverse("6", "2")];
+        let lines = SpectralLines::even(10.0, 1.0, count).unwrap();
+        let frfs = FrfSet::new(lines, FrfForm::Accelerance, pairs, modelled.clone()).unwrap();
+        let reversed = frfs.with_values(|_, value| -value);
+        assert_eq!(exchanged(&reversed, &modelled), []);
+    }
+}
