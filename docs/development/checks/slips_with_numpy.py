@@ -18,6 +18,7 @@ H1 and coherence of ten blows with 0.3 % noise, or hits over time. Kinds:
     second  the far end of the strip turns on the block, and two FRFs do not tell; a second test with 200 g on A, its damping 5 % higher: `plan` says that end, with 0.9, or has nothing left to separate
     moved   natural frequencies off by 0.3 %, shapes by 1 %; a sensor of 5 to 15 g that goes from response to response, or sits at one: its mass within a tenth, with 0.8
     changed such errors in both of two states, and a channel that is turned round or off by a tenth to a fifth in the second: that gain within half a per cent, with 0.9
+    bench   natural frequencies off by 0.3 %, shapes of elastic modes by 1 %, structural damping, sensors 0.7 mm and impacts 1 mm beside their points: nothing, by itself `consistent`; the same since a baseline with other places; or 80 to 150 g on A: that alone, its mass within its interval
     foam    a free fixture, and a spring with a dashpot under either block: both supports, within a tenth, with 0.8
 
 Ends with status 1 where one is not right, or where scores of `joint` have a root mean square above 1.6.
@@ -185,6 +186,8 @@ def case(kind, number, seed, program, folder):
         return column(random, program, folder)
     if kind == "second":
         return second(fixture, structure.truth, random, program, folder)
+    if kind == "bench":
+        return bench(fixture, structure.truth, number, random, program, folder)
     if kind in ("moved", "changed", "foam"):
         return {"moved": moved, "changed": changed, "foam": foam}[kind](structure, number, random, program, folder)
     decay = float(random.uniform(4, 8)) if kind == "window" else 0.0
@@ -249,6 +252,34 @@ def changed(structure, number, random, program, folder):
     found = found_by(answer, "factor")
     is_right = len(found) == 1 and found[0][:2] == ("channel_gain", "response 4") and found[0][2] >= 0.9 and abs(found[0][3] / factor - 1) < 0.005
     return f"{answer['verdict']} {found}, factor {factor:.4f}", is_right
+
+
+def bench(fixture, truth, number, random, program, folder):
+    """Blocks as real ones are, struck as real ones are: nothing, nothing since a baseline, and a lump in turn."""
+    for point in fixture["points"].values():
+        point["x"] = point["x"]["value"]
+    (folder / "fixture.json").write_text(json.dumps(fixture))
+    mass = float(random.uniform(0.08, 0.15)) if number % 3 == 2 else 0.0
+    structure = Structure(truth, added=mass).erring(random)
+    for off in structure.off.values():
+        off[structure.frequencies < 60] = 1.0
+    names = {"baseline.uff": number % 3 == 1, "test.uff": True}
+    for name in [name for name, is_made in names.items() if is_made]:
+        sensors, impacts = ({point: 1e-3 * far * random.standard_normal() for point in truth["points"]} for far in (0.7, 1.0))
+        s, exact = 2j * np.pi * LINES, {}
+        for response, reference in ALL:
+            residues = (structure.row(response, sensors[response]) @ structure.shapes) * (structure.row(reference, impacts[reference]) @ structure.shapes)
+            squares = structure.frequencies**2 * (1 + 2j * structure.ratios) * (structure.frequencies > 60)
+            exact[response, reference] = s**2 * sum(r / (s**2 + m) for r, m in zip(residues, squares))
+        write_frfs(folder / name, exact, random)
+    baseline = ["--baseline", "baseline.uff"] if names["baseline.uff"] else []
+    answer = run(program, folder, "diagnose", "fixture.json", *baseline, "test.uff")
+    found = found_by(answer, "mass")
+    named = [finding for finding in found if finding[2] >= 0.5]
+    intervals = [f["parameters"]["mass"]["ci95"] for f in answer["findings"] if f["kind"] == "added_mass"]
+    holds = bool(intervals) and intervals[0][0] <= mass <= intervals[0][1]
+    is_mass = len(named) == 1 and named[0][:2] == ("added_mass", "A") and holds
+    return f"{answer['verdict']} {found} {np.round(intervals, 4)}, {mass:.4f} kg", is_mass if mass else answer["verdict"] == "consistent"
 
 
 def foam(structure, number, random, program, folder):
@@ -348,7 +379,7 @@ def main():
     parser.add_argument("program", type=lambda path: str(pathlib.Path(path).resolve()))
     parser.add_argument("--cases", type=int, default=7)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", nargs="*", default=["null", "hammer", "sensor", "losses", "record", "joint", "hits", "window", "column", "second", "moved", "changed", "foam"])
+    parser.add_argument("--only", nargs="*", default=["null", "hammer", "sensor", "losses", "record", "joint", "hits", "window", "column", "second", "moved", "changed", "bench", "foam"])
     parser.add_argument("--keep", type=pathlib.Path)
     arguments = parser.parse_args()
     is_right = True
