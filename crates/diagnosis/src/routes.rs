@@ -175,6 +175,14 @@ fn routed(given: Given, without_effects: &Search, modal: Option<&ModalJudgement>
     let fitter = given.fitter;
     let by_lines = |start: Start| by_lines(given, without_effects.clone(), start, modal);
     let Some(modal) = modal.filter(|modal| !modal.needs_nothing()) else { return by_lines(Start::Anew) };
+    if let Some(law) = modal.with_its_law_in_question()
+        && let Some((start, _)) = from_modes(fitter, without_effects, &law)
+    {
+        let parts = by_lines(start);
+        if parts.verdict == Verdict::Explained {
+            return parts;
+        }
+    }
     let Some((start, is_near)) = from_modes(fitter, without_effects, modal) else {
         return by_modes(given, without_effects, modal);
     };

@@ -10,11 +10,11 @@ use crate::matching::Pairing;
 use crate::modelled::ModelledModes;
 use crate::recorded::{Offsets, RecordedModes};
 use crate::settings::errors::{
-    HELD_SHARE, LEAST_SIZE, LEAST_TERM_SQUARED, OF_LOWEST, USUAL_DAMPING, USUAL_FREQUENCY, USUAL_GAIN,
-    USUAL_MASS_LINE, USUAL_QUADRATURE, USUAL_SHAPE, USUAL_STRIKE, USUAL_UPPER_RESIDUAL,
+    HELD_SHARE, LARGEST_STRUCK_GAIN, LEAST_SIZE, LEAST_TERM_SQUARED, OF_LOWEST, USUAL_DAMPING,
+    USUAL_FREQUENCY, USUAL_GAIN, USUAL_MASS_LINE, USUAL_QUADRATURE, USUAL_SHAPE, USUAL_STRIKE,
+    USUAL_UPPER_RESIDUAL,
 };
 use crate::shapes::Shapes;
-use crate::strikes::StrikeSlopes;
 use std::sync::Arc;
 
 /// Sizes of a model's error by kind, as standard deviations, relative ones (0.003 is 0.3 %) but for places:
@@ -47,8 +47,7 @@ pub const FREQUENCY: usize = 0;
 pub const DAMPING: usize = 1;
 /// Place of shapes among them.
 pub const SHAPE: usize = 2;
-/// Place of shapes in quadrature among them.
-pub const QUADRATURE: usize = 3;
+const QUADRATURE: usize = 3;
 const MASS_LINE: usize = 4;
 /// Place of upper residuals among them.
 pub const UPPER_RESIDUAL: usize = 5;
@@ -62,8 +61,8 @@ pub const STRIKE: usize = 7;
 impl Default for ErrorSizes {
     /// What lumped models of machined parts are wrong by: 0.3 % in natural frequencies, 10 % in damping
     /// ratios, 0.5 % in shapes, 0.05 % in quadrature, 0.1 % in mass lines, 15 % in upper residuals, 1 % in
-    /// gains; and where hammers strike, 1 mm. Meant as the scales of half-normal priors, of gains of a half-Cauchy one: fixed beforehand, not
-    /// fitted.
+    /// gains; and 1 mm in where hammers strike. Meant as the scales of half-normal priors, of gains of a
+    /// half-Cauchy one: fixed beforehand, not fitted.
     fn default() -> Self {
         ErrorSizes {
             frequency: USUAL_FREQUENCY,
@@ -152,22 +151,22 @@ pub struct SharedFeatures {
     /// The same if it were structural and not viscous, or the reverse.
     structural: Vec<(usize, f64)>,
     /// Place of the first residue among the compared features.
-    first_residue: usize,
+    pub(crate) first_residue: usize,
     /// By kind, the covariance for a size of one.
-    kinds: Vec<Entries>,
+    pub(crate) kinds: Vec<Entries>,
     /// What errors of a shape at both channels of an FRF make together, for a size of one each: of residues'
     /// real parts, and of their imaginary parts.
     both: [Entries; 2],
     /// What displacements of sensor and impacts make of residues together, for a metre each, and what those of
     /// either and an error of the gain make, for a metre and a size of one.
-    struck: [Entries; 2],
+    pub(crate) struck: [Entries; 2],
 }
 
 /// Entries of the lower triangle of a symmetric matrix that are not zero, by their place in it, row-major.
-type Entries = Vec<(usize, f64)>;
+pub(crate) type Entries = Vec<(usize, f64)>;
 
 /// Puts an entry of a matrix of order `n` among the others, if it is of the lower triangle and not zero.
-fn put(entries: &mut Entries, n: usize, (i, j): (usize, usize), value: f64) {
+pub(crate) fn put(entries: &mut Entries, n: usize, (i, j): (usize, usize), value: f64) {
     if j <= i && value != 0.0 {
         entries.push((i * n + j, value));
     }
@@ -302,52 +301,6 @@ impl SharedFeatures {
         }
     }
 
-    /// The same where sensors sit and hammers strike beside their points, with `slopes` of the model's
-    /// features by that.
-    pub fn with_strikes(
-        mut self,
-        recorded: &RecordedModes,
-        (pairing, modelled): (&Pairing, &ModelledModes),
-        slopes: &[StrikeSlopes; 2],
-    ) -> Self {
-        let (n, frfs, matched) = (self.count(), recorded.frfs(), pairing.pairs.len());
-        let first = self.first_residue + 2 * matched * frfs;
-        for side in slopes {
-            for sharing in side.sharing(recorded) {
-                let mut of_channel = Vec::new();
-                for frf in sharing {
-                    for (k, &(r, m)) in pairing.pairs.iter().enumerate() {
-                        let at = self.first_residue + 2 * k * frfs + 2 * frf;
-                        let slope = side.residue(m, frf) / recorded.modes[r].scale;
-                        of_channel.extend([(at, slope.re), (at + 1, slope.im)]);
-                    }
-                    for (term, slope) in side.terms(frf).into_iter().enumerate() {
-                        of_channel.push((first + 2 * frf + term, slope / recorded.residual_scales[term]));
-                    }
-                }
-                for &(i, a) in &of_channel {
-                    of_channel.iter().for_each(|&(j, b)| put(&mut self.kinds[STRIKE], n, (i, j), a * b));
-                }
-            }
-        }
-        let [of_sensor, of_impacts] = slopes;
-        for (k, &(r, m)) in pairing.pairs.iter().enumerate() {
-            for frf in 0..frfs {
-                let at = (self.first_residue + 2 * k * frfs + 2 * frf) * (n + 1);
-                let [residue, sensor, impacts] =
-                    [modelled.modes[m].residues[frf], of_sensor.residue(m, frf), of_impacts.residue(m, frf)]
-                        .map(|value| value.re / recorded.modes[r].scale);
-                // φ_o'·φ_i' of the residue φ_o·φ_i.
-                let together = sensor * impacts / residue;
-                if together.is_finite() {
-                    self.struck[0].push((at, together.powi(2)));
-                }
-                self.struck[1].push((at, sensor.powi(2) + impacts.powi(2)));
-            }
-        }
-        self
-    }
-
     /// The same where nobody knows how the structure's damping is distributed: whether as these `shapes` of
     /// the paired modes have it, or so that it turns no phases.
     pub fn with_damping_distributed_otherwise(
@@ -459,7 +412,7 @@ impl SharedFeatures {
         for (both, size) in self.both.iter().zip([shape * shape, 2.0 * shape * quadrature]) {
             both.iter().for_each(|&(place, value)| sum[place] += size * value);
         }
-        let (strike, gain) = (sizes.strike.powi(2), sizes.gain.powi(2));
+        let (strike, gain) = (sizes.strike.powi(2), sizes.gain.min(LARGEST_STRUCK_GAIN).powi(2));
         for (struck, size) in self.struck.iter().zip([strike * strike, strike * gain]) {
             struck.iter().for_each(|&(place, value)| sum[place] += size * value);
         }

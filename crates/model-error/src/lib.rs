@@ -95,8 +95,7 @@ mod structural;
 
 pub use basis::Pole;
 pub use errors::{
-    DAMPING, ErrorSizes, FREQUENCY, GAIN, KINDS, QUADRATURE, SHAPE, STRIKE, SharedFeatures, SizePrior,
-    UPPER_RESIDUAL,
+    DAMPING, ErrorSizes, FREQUENCY, GAIN, KINDS, SHAPE, STRIKE, SharedFeatures, SizePrior, UPPER_RESIDUAL,
 };
 pub use evidence::{Linear, ModelEvidence};
 pub use expected::Expected;

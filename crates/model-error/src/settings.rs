@@ -206,6 +206,9 @@ pub(crate) mod errors {
     pub(crate) const USUAL_STRIKE: f64 = 1e-3;
     /// Multiple of its usual size below which an error is none: what is told from noise lies far above.
     pub(crate) const LEAST_SIZE: f64 = 1e-3;
+    /// Error of gains up to which it counts for what it makes of a displacement besides: one without bounds, which
+    /// a wrong hypothesis asks for, would leave residues anything.
+    pub(crate) const LARGEST_STRUCK_GAIN: f64 = 0.05;
     /// Share of the lowest mode's residues below which a model's mass lines are none: it is held to ground.
     pub(crate) const HELD_SHARE: f64 = 0.03;
     /// What a free fit writes into the mass lines of such a structure, relative to the lowest mode's residues,

@@ -5,6 +5,8 @@
 //! and nothing that it is wrong about. An error of this kind is one displacement of each channel, common to
 //! all of its FRFs and modes, that changes residues by the slopes of the shapes.
 
+use crate::errors::{STRIKE, SharedFeatures, put};
+use crate::matching::Pairing;
 use crate::modelled::ModelledModes;
 use crate::recorded::RecordedModes;
 use crate::settings::strikes::STEP;
@@ -49,7 +51,7 @@ impl StrikeSlopes {
     }
 
     /// FRFs that share a channel on this side.
-    pub(crate) fn sharing(&self, recorded: &RecordedModes) -> Vec<Vec<usize>> {
+    fn sharing(&self, recorded: &RecordedModes) -> Vec<Vec<usize>> {
         let mut channels: Vec<(&Channel, Vec<usize>)> = Vec::new();
         for (frf, pair) in recorded.pairs.iter().enumerate() {
             let own = channel(pair, self.side);
@@ -62,13 +64,61 @@ impl StrikeSlopes {
     }
 
     /// Of the residue of a mode in an FRF.
-    pub(crate) fn residue(&self, mode: usize, frf: usize) -> Complex64 {
+    fn residue(&self, mode: usize, frf: usize) -> Complex64 {
         self.residues[mode][frf]
     }
 
     /// Of mass line and upper residual of an FRF.
-    pub(crate) fn terms(&self, frf: usize) -> [f64; 2] {
+    fn terms(&self, frf: usize) -> [f64; 2] {
         self.terms[frf]
+    }
+}
+
+impl SharedFeatures {
+    /// The same where sensors sit and hammers strike beside their points, with `slopes` of the model's
+    /// features by that.
+    pub fn with_strikes(
+        mut self,
+        recorded: &RecordedModes,
+        (pairing, modelled): (&Pairing, &ModelledModes),
+        slopes: &[StrikeSlopes; 2],
+    ) -> Self {
+        let (n, frfs, matched) = (self.count(), recorded.frfs(), pairing.pairs.len());
+        let first = self.first_residue + 2 * matched * frfs;
+        for side in slopes {
+            for sharing in side.sharing(recorded) {
+                let mut of_channel = Vec::new();
+                for frf in sharing {
+                    for (k, &(r, m)) in pairing.pairs.iter().enumerate() {
+                        let at = self.first_residue + 2 * k * frfs + 2 * frf;
+                        let slope = side.residue(m, frf) / recorded.modes[r].scale;
+                        of_channel.extend([(at, slope.re), (at + 1, slope.im)]);
+                    }
+                    for (term, slope) in side.terms(frf).into_iter().enumerate() {
+                        of_channel.push((first + 2 * frf + term, slope / recorded.residual_scales[term]));
+                    }
+                }
+                for &(i, a) in &of_channel {
+                    of_channel.iter().for_each(|&(j, b)| put(&mut self.kinds[STRIKE], n, (i, j), a * b));
+                }
+            }
+        }
+        let [of_sensor, of_impacts] = slopes;
+        for (k, &(r, m)) in pairing.pairs.iter().enumerate() {
+            for frf in 0..frfs {
+                let at = (self.first_residue + 2 * k * frfs + 2 * frf) * (n + 1);
+                let [residue, sensor, impacts] =
+                    [modelled.modes[m].residues[frf], of_sensor.residue(m, frf), of_impacts.residue(m, frf)]
+                        .map(|value| value.re / recorded.modes[r].scale);
+                // φ_o'·φ_i' of the residue φ_o·φ_i.
+                let together = sensor * impacts / residue;
+                if together.is_finite() {
+                    self.struck[0].push((at, together.powi(2)));
+                }
+                self.struck[1].push((at, sensor.powi(2) + impacts.powi(2)));
+            }
+        }
+        self
     }
 }
 

@@ -68,6 +68,7 @@ impl Judge<'_> {
             excess_residual_terms: self.searcher.problem.recorded.has_excess_residual_terms(),
             errors: [&self.search.none, &self.search.best.fit].map(error),
             states_gain: false,
+            is_exact_but_for_its_law: problem.is_exact_but_for_its_law(best, self.searcher.settings.exact),
             since_baseline: self.searcher.calibrated,
             stated,
             covariance,

@@ -38,6 +38,8 @@ pub(crate) struct ModalJudgement {
     pub errors: [ModelError; 2],
     /// Whether the fixture states how well the gains of its records are known.
     pub states_gain: bool,
+    /// Whether the best needs no error of the model beside another law of its damping.
+    pub is_exact_but_for_its_law: bool,
     /// Whether it is of what has changed since a baseline.
     pub since_baseline: bool,
     /// The fixture by itself and the best hypothesis, at the most probable sizes of error: what is said of
@@ -98,6 +100,18 @@ impl ModalJudgement {
     /// anything, only lines can show.
     pub(crate) fn needs_nothing(&self) -> bool {
         self.verdict == Verdict::Consistent && self.search.best.exact
+    }
+
+    /// The same as if modes were explained by nothing, where all that they need is another law of the damping
+    /// than the model has: which one, and whether it is that, lines are asked.
+    pub(crate) fn with_its_law_in_question(&self) -> Option<Self> {
+        let unexplained = || ModalJudgement { verdict: Verdict::Unexplained, ..self.clone() };
+        self.needs_another_law_alone().then(unexplained)
+    }
+
+    /// Whether another law of the damping than the model has is all that modes need.
+    pub(crate) fn needs_another_law_alone(&self) -> bool {
+        self.verdict == Verdict::Consistent && !self.search.best.exact && self.is_exact_but_for_its_law
     }
 
     /// Whether errors of the usual size explain the modes, with what was found or but for the lesser part.

@@ -39,6 +39,12 @@ pub(crate) fn without_imitations(
     if is_exact || search.repaired.hypothesis.effect_count() == 0 {
         return None;
     }
+    // Of another law of the damping modes tell that it is there, and lines which one it is.
+    if by_modes.is_some_and(ModalJudgement::needs_another_law_alone)
+        && explains(fitter, &search.repaired, true)
+    {
+        return None;
+    }
     let settings = &fitter.settings.modal;
     let anew;
     let features = match by_modes {

@@ -8,8 +8,7 @@ use crate::settings::modal::sizes::{
 };
 use jointscope_fixture::{Fixture, Place, Spread, StatedError};
 use jointscope_model_error::{
-    DAMPING, ErrorSizes, FREQUENCY, GAIN, KINDS, ModelEvidence, QUADRATURE, SHAPE, STRIKE, SizePrior,
-    UPPER_RESIDUAL,
+    DAMPING, ErrorSizes, FREQUENCY, GAIN, KINDS, ModelEvidence, SHAPE, STRIKE, SizePrior, UPPER_RESIDUAL,
 };
 use jointscope_spectra::{Channel, FrfPair};
 use serde::Serialize;
@@ -180,6 +179,13 @@ impl Problem<'_> {
         both.is_some_and(|(asked, held)| asked - held < AS_PROBABLE)
     }
 
+    /// Whether errors of the model gain less than this in ln p beside another law of its damping, which is none.
+    pub(crate) fn is_exact_but_for_its_law(&self, fit: &ModalFit, gain: f64) -> bool {
+        let least = self.sizes.times(ErrorSizes::LEAST);
+        let without = fit.linear.ln_density(&fit.paired.comparison, &least);
+        fit.paired.pairing.alone() == 0.0 && without.is_some_and(|ln| self.seen(fit).ln - ln < gain)
+    }
+
     /// Whether every mode has a partner and errors of the model gain less than this in ln p: among them
     /// another distribution of its damping, where no effect makes its own of that.
     pub(crate) fn is_exact(&self, fit: &ModalFit, gain: f64) -> bool {
@@ -193,15 +199,15 @@ impl Problem<'_> {
         fit.paired.pairing.alone() == 0.0 && gained() < gain
     }
 
-    /// The sizes of [`Problem::relative_sizes`] by which a hypothesis stands or falls: none of upper
-    /// residuals beside effects where bodies are rigid; that of shapes, if it is not stated, by so many times (`shapes`)
-    /// what is usual; that of damping ratios by no less than a share of
-    /// what the fixture states as their deviations. Where effects have made other modes than those of which
-    /// it states ratios, by no less than the whole: these get theirs from the others' damping.
+    /// The sizes of [`Problem::relative_sizes`] by which a hypothesis stands or falls: none of upper residuals
+    /// beside effects where bodies are rigid; that of shapes, if it is not stated, by so many times (`shapes`)
+    /// what is usual; that of damping ratios by no less than a share of what the fixture states as their
+    /// deviations. Where effects have made other modes than those of which it states ratios, by no less than
+    /// the whole: these get theirs from the others' damping.
     pub(crate) fn relative_sizes_as_stated(&self, fit: &ModalFit, shapes: f64) -> Vec<f64> {
         let mut sizes = self.relative_sizes(fit);
         if !self.stated[SHAPE] {
-            [SHAPE, QUADRATURE].into_iter().for_each(|kind| sizes[kind] /= shapes);
+            sizes[SHAPE] /= shapes;
         }
         let stated = fit.hypothesis.deviation_of_damping();
         let usual = if fit.hypothesis.has_other_modes() { stated } else { LEAST_OF_STATED_DAMPING * stated };
