@@ -149,7 +149,7 @@ fn a_mount_that_became_softer_since_a_baseline_is_named_by_its_stiffness() {
 #[test]
 fn hammers_that_strike_elsewhere_by_a_millimetre_have_changed_nothing() {
     let fixture = Fixture::from_value(&{
-        let mut value = serde_json::to_value(&on_rubber(1.5e5)).unwrap();
+        let mut value = serde_json::to_value(on_rubber(1.5e5)).unwrap();
         for point in ["1", "2", "3", "4"] {
             let x = value["points"][point]["x"].clone();
             value["points"][point]["x"] = json!({ "value": x, "std": 1e-3 });

@@ -194,7 +194,7 @@ fn where_the_model_is_off_by_more_than_the_noise_its_error_stands_beside_the_usu
         "0.2 %",
         "none seen",
         "1.3 %",
-        "0.5 %",
+        "1.5 %",
         "Evidence gained",
     ] {
         holds(&html, &[part]);
