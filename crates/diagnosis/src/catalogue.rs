@@ -8,7 +8,7 @@ use crate::settings::effects::starts::{
     FEWEST_HALF_WAVES, LEAST_LENGTH, LOWEST_FREQUENCY, MOST_HALF_WAVES, PLACES_A_HALF_WAVE,
 };
 use crate::together::inverts;
-use crate::{Hypothesis, Observation};
+use crate::{Hypothesis, Observation, Tolerance};
 use jointscope_fixture::{
     BodyKind, Dof, Effect, EffectKind, EffectSpec, Entry, Fixture, Joint, JointLaw, Measure, NamedQuantity,
     Place, PlaceKind, QuantityKey, QuantityOwner, Starts,
@@ -225,19 +225,21 @@ pub(crate) fn with_all_wrong_quantities(
 /// The same with the stiffness of every support that may have changed since a fixture was calibrated: of one
 /// that has become softer no spring beside it tells.
 pub(crate) fn with_changed_supports(candidates: &[Candidate], calibrated: &Hypothesis) -> Vec<Candidate> {
-    let changed = calibrated.tolerances().iter().enumerate().filter_map(|(index, tolerance)| {
-        let key = tolerance.quantity.key;
-        let now = tolerance.value(calibrated.departure(index));
-        matches!(key, QuantityKey::SupportStiffness(_)).then(|| Candidate {
-            kind: EffectKind::QuantityError,
-            place: Place::Quantity(tolerance.quantity.path.clone(), key),
-            dof: None,
-            starts: CHANGES_OF_SUPPORTS.map(|times| vec![times * now]).to_vec(),
-            directions: Vec::new(),
-        })
+    let tolerances = calibrated.tolerances();
+    let is_support =
+        |index: &usize| matches!(tolerances[*index].quantity.key, QuantityKey::SupportStiffness(_));
+    let changed = (0..tolerances.len()).filter(is_support).map(|index| {
+        let now = tolerances[index].value(calibrated.departure(index));
+        wrong(&tolerances[index], CHANGES_OF_SUPPORTS.map(|times| times * now).to_vec())
     });
-    let changed: Vec<Candidate> = changed.collect();
     candidates.iter().cloned().chain(changed).collect()
+}
+
+/// A quantity that has another value than stated, which a search sets out from each of these to find.
+fn wrong(tolerance: &Tolerance, values: Vec<f64>) -> Candidate {
+    let place = Place::Quantity(tolerance.quantity.path.clone(), tolerance.quantity.key);
+    let starts = values.into_iter().map(|value| vec![value]).collect();
+    Candidate { kind: EffectKind::QuantityError, place, dof: None, starts, directions: Vec::new() }
 }
 
 fn with_departed(
@@ -252,15 +254,13 @@ fn with_departed(
     let distance = |index: usize| refitted.departure(index).abs();
     farthest.sort_by(|a, b| distance(*b).total_cmp(&distance(*a)));
     farthest.truncate(count);
-    let wrong = farthest.into_iter().map(|index| {
+    let departed = farthest.into_iter().map(|index| {
         let tolerance = &tolerances[index];
-        let at = |times: f64| vec![tolerance.value(times * refitted.departure(index))];
-        let place = Place::Quantity(tolerance.quantity.path.clone(), tolerance.quantity.key);
-        let starts = DEPARTURES.map(at).to_vec();
-        Candidate { kind: EffectKind::QuantityError, place, dof: None, starts, directions: Vec::new() }
+        let at = |times: f64| tolerance.value(times * refitted.departure(index));
+        wrong(tolerance, DEPARTURES.map(at).to_vec())
     });
     let mut all = candidates.to_vec();
-    for other in wrong {
+    for other in departed {
         if all.iter().all(|known| known.place != other.place) {
             all.push(other);
         }

@@ -34,9 +34,12 @@ fn channel(pair: &FrfPair, side: Side) -> &Channel {
 }
 
 impl StrikeSlopes {
-    /// Of sensors and of impacts about the modes `modelled` of a fixture; `None` where a pole cannot be
-    /// followed.
+    /// Of sensors and of impacts about the modes `modelled` of a fixture; `None` where no body turns, whose
+    /// points then move alike, and where a pole cannot be followed.
     pub fn of(fixture: &Fixture, recorded: &RecordedModes, modelled: &ModelledModes) -> Option<[Self; 2]> {
+        if fixture.bodies().iter().all(|body| !body.kind.rotates()) {
+            return None;
+        }
         let slopes = |side: Side| {
             let moved =
                 ModelledModes::after_step(&displaced(fixture, recorded, side)?, recorded, (None, modelled))?;
@@ -62,16 +65,6 @@ impl StrikeSlopes {
         }
         channels.into_iter().map(|(_, frfs)| frfs).collect()
     }
-
-    /// Of the residue of a mode in an FRF.
-    fn residue(&self, mode: usize, frf: usize) -> Complex64 {
-        self.residues[mode][frf]
-    }
-
-    /// Of mass line and upper residual of an FRF.
-    fn terms(&self, frf: usize) -> [f64; 2] {
-        self.terms[frf]
-    }
 }
 
 impl SharedFeatures {
@@ -91,10 +84,10 @@ impl SharedFeatures {
                 for frf in sharing {
                     for (k, &(r, m)) in pairing.pairs.iter().enumerate() {
                         let at = self.first_residue + 2 * k * frfs + 2 * frf;
-                        let slope = side.residue(m, frf) / recorded.modes[r].scale;
+                        let slope = side.residues[m][frf] / recorded.modes[r].scale;
                         of_channel.extend([(at, slope.re), (at + 1, slope.im)]);
                     }
-                    for (term, slope) in side.terms(frf).into_iter().enumerate() {
+                    for (term, slope) in side.terms[frf].into_iter().enumerate() {
                         of_channel.push((first + 2 * frf + term, slope / recorded.residual_scales[term]));
                     }
                 }
@@ -107,9 +100,12 @@ impl SharedFeatures {
         for (k, &(r, m)) in pairing.pairs.iter().enumerate() {
             for frf in 0..frfs {
                 let at = (self.first_residue + 2 * k * frfs + 2 * frf) * (n + 1);
-                let [residue, sensor, impacts] =
-                    [modelled.modes[m].residues[frf], of_sensor.residue(m, frf), of_impacts.residue(m, frf)]
-                        .map(|value| value.re / recorded.modes[r].scale);
+                let [residue, sensor, impacts] = [
+                    modelled.modes[m].residues[frf],
+                    of_sensor.residues[m][frf],
+                    of_impacts.residues[m][frf],
+                ]
+                .map(|value| value.re / recorded.modes[r].scale);
                 // φ_o'·φ_i' of the residue φ_o·φ_i.
                 let together = sensor * impacts / residue;
                 if together.is_finite() {

@@ -5,10 +5,10 @@ use crate::settings::exchanged::{FEWEST_LINES, LIKE_FIXTURE, REMAINING_SHARE};
 use jointscope_spectra::{FrfPair, FrfSet};
 use num_complex::Complex64;
 
-/// Median |ln(H/Ĥ)|² over the lines.
-fn distance(recorded: &[Complex64], modelled: &[Complex64]) -> f64 {
+/// Median |ln(±H/Ĥ)|² over the lines, with this sign.
+fn distance(recorded: &[Complex64], modelled: &[Complex64], sign: f64) -> f64 {
     let pairs = recorded.iter().zip(modelled);
-    let apart = pairs.map(|(a, b)| (a / b).ln().norm_sqr()).filter(|apart| apart.is_finite());
+    let apart = pairs.map(|(a, b)| (sign * a / b).ln().norm_sqr()).filter(|apart| apart.is_finite());
     median(apart.collect()).unwrap_or(f64::INFINITY)
 }
 
@@ -19,13 +19,11 @@ pub(crate) fn exchanged(frfs: &FrfSet, modelled: &[Complex64]) -> Vec<(usize, us
     if lines < FEWEST_LINES {
         return Vec::new();
     }
-    let distance = |recorded: usize, model: usize| {
-        distance(frfs.values(recorded), &modelled[model * lines..(model + 1) * lines])
+    let signed = |recorded: usize, model: usize, sign: f64| {
+        distance(frfs.values(recorded), &modelled[model * lines..(model + 1) * lines], sign)
     };
-    let own = |index: usize| {
-        let reversed: Vec<Complex64> = frfs.values(index).iter().map(|value| -value).collect();
-        distance(index, index).min(self::distance(&reversed, &modelled[index * lines..(index + 1) * lines]))
-    };
+    let distance = |recorded: usize, model: usize| signed(recorded, model, 1.0);
+    let own = |index: usize| distance(index, index).min(signed(index, index, -1.0));
     let own: Vec<f64> = (0..count).map(own).collect();
     let mut taken = vec![false; count];
     let mut found = Vec::new();
@@ -76,7 +74,7 @@ pub(crate) fn swapped(
         let anew = model(&frfs.clone().with_pairs(labels.clone()))?;
         let moved: Vec<usize> = (0..pairs.len()).filter(|&at| labels[at] != pairs[at]).collect();
         let sum = |all: &[Complex64]| -> f64 {
-            let of = |&at: &usize| distance(frfs.values(at), &all[at * lines..(at + 1) * lines]);
+            let of = |&at: &usize| distance(frfs.values(at), &all[at * lines..(at + 1) * lines], 1.0);
             moved.iter().map(of).sum()
         };
         let (before, after) = (sum(modelled), sum(&anew));

@@ -147,9 +147,6 @@ fn changed_alike(change: f64) -> String {
     )
 }
 
-/// What the places of sensors and impacts are called: the one error that is a length.
-const STRIKES: &str = "places of sensors and impacts";
-
 /// One kind of a model's error, for a table or a sentence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorInWords {
@@ -174,14 +171,21 @@ pub fn error_in_words(error: &ModelError) -> [ErrorInWords; 4] {
         error;
     let (usual, ci95) = (settings.usual, ci95.as_ref());
     let of_frequency = usual_frequency.unwrap_or(usual.frequency);
+    let share = short as fn(f64) -> String;
     let kinds = [
-        ("natural frequency", frequency, of_frequency, stated.frequency, ci95.map(|ci| ci.frequency)),
-        ("damping ratio", damping, usual.damping, stated.damping, ci95.map(|ci| ci.damping)),
-        ("residues", residue, ModelError::usual_residue(), stated.residue, ci95.map(|ci| ci.residue)),
-        (STRIKES, strike, usual_strike.unwrap_or(usual.strike), None, ci95.map(|ci| ci.strike)),
+        ("natural frequency", frequency, of_frequency, stated.frequency, ci95.map(|ci| ci.frequency), share),
+        ("damping ratio", damping, usual.damping, stated.damping, ci95.map(|ci| ci.damping), share),
+        ("residues", residue, ModelError::usual_residue(), stated.residue, ci95.map(|ci| ci.residue), share),
+        (
+            "places of sensors and impacts",
+            strike,
+            usual_strike.unwrap_or(usual.strike),
+            None,
+            ci95.map(|ci| ci.strike),
+            millimetres,
+        ),
     ];
-    kinds.map(|(kind, size, usual, stated, interval)| {
-        let short = if kind == STRIKES { millimetres } else { short };
+    kinds.map(|(kind, size, usual, stated, interval, short)| {
         let usual = stated.unwrap_or(usual);
         let seen = (*size > 0.0).then(|| short(*size));
         let with_interval = match (&seen, interval) {

@@ -2,7 +2,7 @@
 //! held against.
 
 use crate::modal::problem::Problem;
-use crate::modal::sizes::{known, with_strikes_as_stated};
+use crate::modal::sizes::known;
 use crate::settings::ModalSettings;
 use crate::settings::modal::recorded::SPARE_ORDERS;
 use crate::work::Work;
@@ -32,7 +32,7 @@ impl Features {
         settings: &ModalSettings,
     ) -> Option<Self> {
         let fixture = nominal.to_fixture().ok()?;
-        let known = with_strikes_as_stated(known(settings, &fixture), &fixture, observation.pairs());
+        let known = known(settings, &fixture, observation.pairs());
         let features = Features::new(recorded(observation, nominal)?, known);
         let damps = |dashpot: &Option<Quantity>| dashpot.as_ref().is_some_and(|damping| damping.value > 0.0);
         let mut supports = fixture.supports().iter();

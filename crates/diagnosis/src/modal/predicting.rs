@@ -45,10 +45,10 @@ impl ModalJudgement {
         if is_none {
             return (self.withdrawn(), Search { repaired: search.refitted.clone(), ..search });
         }
-        let is_at_odds = || {
-            self.leaves_much_where_incomplete(fitter, &search) || self.tells_nothing_of_lines(fitter, &search)
-        };
-        if self.verdict == Verdict::Explained && is_at_odds() {
+        if self.verdict == Verdict::Explained
+            && (self.leaves_much_where_incomplete(fitter, &search)
+                || self.tells_nothing_of_lines(fitter, &search))
+        {
             return (self.doubted(), search);
         }
         (self.clone(), search)

@@ -74,29 +74,20 @@ fn none_turns(fixture: &Fixture) -> bool {
     fixture.bodies().iter().all(|body| !body.kind.rotates())
 }
 
-/// The same of channels at points of a fixture: who states how well a point's place is known, knows where it was
-/// struck as well.
-pub(super) fn with_strikes_as_stated(
-    mut known: SizePrior,
-    fixture: &Fixture,
-    pairs: &[FrfPair],
-) -> SizePrior {
-    if known.stated[STRIKE] {
-        return known;
-    }
-    let usual = known.scales.strike;
+/// How far beside their points sensors and impacts are: who states how well a point's place is known, knows
+/// where it was struck as well.
+fn strike_as_stated(fixture: &Fixture, pairs: &[FrfPair], usual: f64) -> f64 {
     let squared = |channel: &Channel| match fixture.point(&channel.point).map(|point| point.x.spread) {
         Some(Spread::Stated(deviation)) => deviation.powi(2),
         _ => usual * usual,
     };
     let all = pairs.iter().flat_map(|pair| [squared(&pair.response), squared(&pair.reference)]);
     let mean = all.sum::<f64>() / (2 * pairs.len()).max(1) as f64;
-    known.scales.strike = mean.sqrt().max(ErrorSizes::LEAST * usual);
-    known
+    mean.sqrt().max(ErrorSizes::LEAST * usual)
 }
 
 /// The sizes that are usual but for those that the fixture states.
-pub(super) fn known(settings: &ModalSettings, fixture: &Fixture) -> SizePrior {
+pub(super) fn known(settings: &ModalSettings, fixture: &Fixture, pairs: &[FrfPair]) -> SizePrior {
     // What has changed since a baseline is held against sizes of its own, of an exact model too.
     let stated = Some(fixture.model_error()).filter(|stated| !stated.is_exact());
     let StatedError { frequency, damping, residue } = stated.unwrap_or_default();
@@ -115,11 +106,13 @@ pub(super) fn known(settings: &ModalSettings, fixture: &Fixture) -> SizePrior {
         shape: residue.unwrap_or(usual.shape),
         upper_residual: if all_bend(fixture) { settings.above_of_beams } else { usual.upper_residual },
         gain: fixture.record_gain().unwrap_or(gain),
+        // Who states what residues are wrong by, states all that they are.
+        strike: match residue {
+            Some(_) => ErrorSizes::LEAST * usual.strike,
+            None => strike_as_stated(fixture, pairs, usual.strike),
+        },
         ..usual
     };
-    // Who states what residues are wrong by, states all that they are.
-    let strike = if residue.is_some() { ErrorSizes::LEAST * usual.strike } else { usual.strike };
-    let scales = ErrorSizes { strike, ..scales };
     let mut stated = [false; KINDS];
     stated[STRIKE] = residue.is_some();
     stated[FREQUENCY] = frequency.is_some();

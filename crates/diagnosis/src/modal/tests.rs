@@ -109,7 +109,7 @@ fn recorded(truth: &Hypothesis) -> Observation {
 #[test]
 fn what_is_left_above_the_band_holds_nothing_against_a_name_of_rigid_blocks() {
     let blocks = Fixture::from_json(BLOCKS).unwrap();
-    let usual = |fixture: &Fixture| known(&Settings::default().modal, fixture).scales.upper_residual;
+    let usual = |fixture: &Fixture| known(&Settings::default().modal, fixture, &[]).scales.upper_residual;
     assert!(usual(&bar(SHEAR)) < 0.2 * usual(&blocks), "a beam has modes of its own there");
     let nominal = Hypothesis::nominal(&blocks, false);
     let lump = Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.1, 0.02]);
@@ -134,7 +134,7 @@ fn frequencies_of_storeys_that_do_not_turn_are_known_less_well_unless_the_fixtur
             r#"{{ "bodies": {{ "F1": {{ "mass": 1.5{turns} }} }}, "points": {{ "1": {{ "body": "F1", "x": 0.1 }} }}, "joints": {{}},
                   "supports": {{ "ground": {{ "point": "1", "stiffness": 1.4e6 }} }}{stated} }}"#
         );
-        known(&Settings::default().modal, &Fixture::from_json(&text).unwrap()).scales.frequency
+        known(&Settings::default().modal, &Fixture::from_json(&text).unwrap(), &[]).scales.frequency
     };
     let (still, turning) = (r#", "rotates": false"#, r#", "inertia": 1e-3, "x_cg": 0.1"#);
     assert_eq!(storey(turning, ""), 0.003);
