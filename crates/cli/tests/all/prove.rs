@@ -39,7 +39,7 @@ fn solids_and_hits_have_scores_of_their_own_and_pages_that_diagnose_makes_again(
     for (route, key, section, right, seed) in [
         ("--solid", "solid", "Recordings of solids", true, "1"),
         ("--struck", "struck", "Hits over time", true, "1"),
-        ("--solid-as-is", "solid_as_is", "Recordings of solids as they are", false, "6"),
+        ("--solid-as-is", "solid_as_is", "Recordings of solids as they are", false, "12"),
         (
             "--modal-errors",
             "modal_errors",
