@@ -10,6 +10,7 @@ use crate::location::Location;
 use crate::mismatch::{FrfMismatch, mismatch};
 use crate::modal::{Features, ModelError};
 use crate::options::{DiagnosisError, DiagnosisOptions};
+use crate::record_end::without_early_end;
 use crate::routes::{self, Parts, chance};
 use crate::search::Search;
 use crate::settings::Settings;
@@ -19,6 +20,7 @@ use crate::{Baseline, Hypothesis, Observation, Watch};
 use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::{EffectKind, Fixture};
 use jointscope_lumped::Assembly;
+use jointscope_model_error::RecordEnd;
 use jointscope_spectra::FrfSet;
 use std::sync::Arc;
 
@@ -65,6 +67,8 @@ pub struct Diagnosis {
     /// The largest share by which FRFs fell short because of noise of the force, where that explains the
     /// recording better: the observation is without it.
     pub falls_short: Option<f64>,
+    /// Where records ended, where the structure still rang: the observation is with what followed.
+    pub early_end: Option<RecordEnd>,
     /// What no modes explain of the recording, as a share of its FRFs, where it had to count as noise for
     /// anything to be explained: the observation has so much.
     pub beside_modes: Option<f64>,
@@ -99,6 +103,8 @@ impl Diagnosis {
         let fixture = &with_gains_of_records(fixture, frfs, options);
         let nominal = Hypothesis::nominal(fixture, options.exact);
         let (usable, observation) = Usable::of(frfs, options, &nominal, work)?;
+        watch.stage("looking for what followed after the end of the records");
+        let (observation, early_end) = without_early_end(observation, &nominal);
         let diagnosed = |observation| Self::by_its_route(fixture, &usable, observation, watch);
         let diagnosis = diagnosed(observation)?;
         let diagnosis = match options.baseline {
@@ -109,7 +115,7 @@ impl Diagnosis {
         };
         let diagnosis = diagnosis.within_estimates(options);
         let drift = usable.drifted.as_ref().and_then(|drifted| diagnosis.told_drift(drifted));
-        Ok(Diagnosis { contradictory: usable.contradictory, drift, ..diagnosis })
+        Ok(Diagnosis { contradictory: usable.contradictory, early_end, drift, ..diagnosis })
     }
 
     /// What the route of a recording makes of an observation, where FRFs are many of a part of them first.
@@ -125,7 +131,8 @@ impl Diagnosis {
         let fitter = Fitter { observation: searched, settings: &options.settings, watch };
         let mut parts = match &options.baseline {
             Some(baseline) => {
-                let baseline = usable.part_of_baseline(baseline)?;
+                let nominal = Hypothesis::nominal(fixture, options.exact);
+                let (baseline, _) = without_early_end(usable.part_of_baseline(baseline)?, &nominal);
                 changed_since(&fitter, &observation, baseline, (fixture, options.exact))?
             }
             None => routes::judged(&fitter, fixture, options)?,
@@ -149,6 +156,7 @@ impl Diagnosis {
             stated,
             contradictory: Vec::new(),
             falls_short: None,
+            early_end: None,
             beside_modes: None,
             drift: None,
             stopped: observation.work().left_out(),

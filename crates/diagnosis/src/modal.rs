@@ -67,7 +67,7 @@ mod uncertainty;
 
 pub(crate) use beside_lines::Explaining;
 pub(crate) use compared::fixture_by_modes;
-pub(crate) use features::{Features, recorded};
+pub(crate) use features::{Features, modes_options, recorded};
 pub(crate) use judgement::ModalJudgement;
 pub(crate) use known::Known;
 pub(crate) use needs::without_imitations;

@@ -154,6 +154,12 @@ impl Observation {
         self.with_values(values, |at| factors[at].norm(), -2)
     }
 
+    /// The observation of FRFs that are this one's values and what these lack, as well known as before.
+    pub(crate) fn plus(&self, missing: &[Complex64]) -> Option<Self> {
+        let values = self.values().iter().zip(missing).map(|(value, missing)| value + missing).collect();
+        self.with_values(values, |_| 1.0, 0)
+    }
+
     /// The same with other values, whose weights are this one's times a power of a size, and whose levels are
     /// divided by it.
     fn with_values(&self, values: Vec<Complex64>, size: impl Fn(usize) -> f64, power: i32) -> Option<Self> {

@@ -3,7 +3,7 @@
 use crate::file::{value, with_sentence};
 use jointscope_diagnosis::{
     Departure, Diagnosis, EndErrors, Finding, FrfMismatch, HeldOut, Hypothesis, LawFit, LineEstimate,
-    Location, ModeChange, ModelError, Tried, Variation, Verdict,
+    Location, ModeChange, ModelError, RecordEnd, Tried, Variation, Verdict,
 };
 use jointscope_findings::by_model;
 use jointscope_frf::noise::NoiseSource;
@@ -47,6 +47,7 @@ pub fn diagnosis_file(diagnosis: &Diagnosis) -> Value {
         tried: &diagnosis.tried,
         stopped: &diagnosis.stopped,
         contradictory: &diagnosis.contradictory,
+        early_end: diagnosis.early_end,
         drift: diagnosis.drift.as_ref().map(|drift| with_sentence(drift, drift.says())),
         modes: diagnosis.baseline.as_ref().map(|baseline| baseline.modes.as_slice()),
     })
@@ -83,6 +84,9 @@ struct DiagnosisFile<'a> {
     /// Bands, Hz, left out since their lines contradict all others.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     contradictory: &'a [(f64, f64)],
+    /// Where records ended, where the structure still rang.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    early_end: Option<RecordEnd>,
     /// How the structure changed from reference to reference.
     #[serde(skip_serializing_if = "Option::is_none")]
     drift: Option<Value>,

@@ -34,7 +34,7 @@ pub(crate) struct FreeFit {
     /// Information on ln ω and ln ζ of all poles, and the Gauss–Newton step of them.
     information: Vec<f64>,
     step: Vec<f64>,
-    chi2: f64,
+    pub chi2: f64,
     /// Squared residuals in units of the noise, by line, over all FRFs.
     misfit: Vec<f64>,
 }
@@ -126,7 +126,18 @@ impl FreeFit {
         2 * self.poles.len() + self.fits.len() * 2 * (self.poles.len() + self.terms)
     }
 
-    fn chi2_per_dof(&self, recording: WeightedFrfs) -> f64 {
+    /// Residues of a mode, FRF by FRF.
+    pub(crate) fn residues(&self, mode: usize) -> impl Iterator<Item = Complex64> + '_ {
+        self.fits.iter().map(move |fit| fit.coefficients[mode])
+    }
+
+    /// The coefficients of other values of an FRF, at the same poles, and what these leave of them in units of
+    /// the noise.
+    pub(crate) fn split(&self, frf: usize, values: &[Complex64]) -> (Vec<Complex64>, Vec<Complex64>) {
+        self.fits[frf].projection.split(values)
+    }
+
+    pub(crate) fn chi2_per_dof(&self, recording: WeightedFrfs) -> f64 {
         let degrees = 2.0 * recording.weights.iter().filter(|w| **w > 0.0).count() as f64;
         self.chi2 / (degrees - self.unknowns() as f64).max(1.0)
     }
@@ -246,11 +257,10 @@ impl FreeFit {
         let lines = recording.frfs.lines();
         let frfs = self.fits.len();
         let modes = self.inside;
-        let residues = |r: usize| -> Vec<Complex64> { self.fits.iter().map(|f| f.coefficients[r]).collect() };
         let scale = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt();
         let recorded: Vec<RecordedMode> = (0..modes)
             .map(|r| {
-                let residues = residues(r);
+                let residues: Vec<Complex64> = self.residues(r).collect();
                 let sizes: Vec<f64> = residues.iter().map(|a| a.norm()).collect();
                 let resolved = self.poles[r].omega / TAU > resolved_from;
                 let scale = scale(&sizes).max(f64::MIN_POSITIVE);

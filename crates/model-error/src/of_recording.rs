@@ -10,13 +10,23 @@ use crate::settings::recorded::{
     ABOVE_BAND, BELOW_BAND, CLEAR_DAMPING, CLEAR_FREQUENCY, CLEAR_LINES, DAMPING_RATIO_ABOVE,
     DAMPING_RATIO_BELOW, EXPECTED_WITHIN, MOST_LINES_LEFT_OUT, NARROW, RESOLVED_LINES,
 };
-use jointscope_modes::{ModalAnalysis, ModesOptions};
+use jointscope_modes::{ModalAnalysis, Mode, ModesOptions};
 use jointscope_spectra::FrfSet;
 use std::f64::consts::TAU;
 
+/// Poles that a recording shows by itself, in the band and outside it.
+pub(crate) fn poles_of(recording: WeightedFrfs, options: &ModesOptions) -> Option<(Vec<Pole>, Vec<Pole>)> {
+    let analysis = ModalAnalysis::of(recording.frfs, options).ok()?;
+    let poles = |modes: &[Mode]| -> Vec<Pole> {
+        let pole = |m: &Mode| Pole { omega: TAU * m.frequency, damping_ratio: m.damping_ratio };
+        modes.iter().map(pole).filter(|p| p.damping_ratio > 0.0 && p.damping_ratio < 1.0).collect()
+    };
+    Some((poles(&analysis.modes), poles(&analysis.outside)))
+}
+
 /// The free fit that is begun with poles in and out of the band, with what else the recording asks for: modes
 /// just outside the band, then more residual terms, then modes in the band that were missed.
-fn free_fit(recording: WeightedFrfs, inside: Vec<Pole>, outside: &[Pole]) -> Option<FreeFit> {
+pub(crate) fn free_fit(recording: WeightedFrfs, inside: Vec<Pole>, outside: &[Pole]) -> Option<FreeFit> {
     let mut fit = FreeFit::converged(recording, inside, outside, TERMS.0)?;
     let lines = recording.frfs.lines().hz();
     let (low, high) = (TAU * lines[0], TAU * lines[lines.len() - 1]);
@@ -97,15 +107,8 @@ impl RecordedModes {
         options: &ModesOptions,
         expected: impl FnOnce(&RecordedModes) -> Expected,
     ) -> Option<Self> {
-        let analysis = ModalAnalysis::of(recording.frfs, options).ok()?;
-        let poles = |modes: &[jointscope_modes::Mode]| -> Vec<Pole> {
-            let pole = |m: &jointscope_modes::Mode| Pole {
-                omega: TAU * m.frequency,
-                damping_ratio: m.damping_ratio,
-            };
-            modes.iter().map(pole).filter(|p| p.damping_ratio > 0.0 && p.damping_ratio < 1.0).collect()
-        };
-        let fit = free_fit(recording, poles(&analysis.modes), &poles(&analysis.outside))?;
+        let (inside, outside) = poles_of(recording, options)?;
+        let fit = free_fit(recording, inside, &outside)?;
         let alone = fit.recorded_modes(recording)?;
         let expected = expected(&alone);
         let Expected { all, unpaired } = expected;

@@ -73,6 +73,37 @@ pub(crate) mod free_fit {
     pub(crate) const STEP_SHARES: [f64; 3] = [1.0, 0.3, 0.05];
 }
 
+/// Records that ended while the structure still rang.
+pub(crate) mod record_end {
+    /// Share of the reciprocal of the lines' distance after which a record ends, at the soonest: triggers come
+    /// within its first tenth, and twice its length is transformed with zeros.
+    pub(crate) const SHORTEST: f64 = 0.45;
+    /// What must be left of a mode for its end to matter: a few of the shares to which FRFs are known.
+    pub(crate) const LEAST_LEFT: f64 = 0.003;
+    /// Lines on either side of a resonance on which ends are looked for.
+    pub(crate) const NEAR_LINES: f64 = 40.0;
+    /// Times that the search sets out from, beside the whole length.
+    pub(crate) const MOST_STARTS: usize = 3;
+    /// What is missing and the residues that tell it ask for each other in turn: share of an error that may be
+    /// left, and turns at the most.
+    pub(crate) const SETTLED: f64 = 3e-4;
+    pub(crate) const MOST_TURNS: f64 = 20.0;
+    /// Root mean square duration of a blow, over the highest line's 1/ω, at most: its force is a fifth there of
+    /// what it is at rest, and coherence would be gone.
+    pub(crate) const LONGEST_BLOW: f64 = 1.8;
+    /// Times the poles are fitted to FRFs as restored.
+    pub(crate) const ROUNDS: usize = 3;
+    /// Times the area in which the end lies is halved at given poles.
+    pub(crate) const STEPS: usize = 5;
+    /// Phase of residues, rad, that structures have by themselves: structural damping leaves a damping ratio.
+    pub(crate) const QUADRATURE: f64 = 0.01;
+    /// What an end must gain in χ²: a thousand times that are tried gain 14 by chance.
+    pub(crate) const LEAST_GAIN: f64 = 40.0;
+    /// Share of what no poles explain that may be left: what is no end is not taken for one because it
+    /// resembles one a little.
+    pub(crate) const LEFT_OF_MISFIT: f64 = 0.5;
+}
+
 /// Lines and frequencies that stand for a whole recording.
 pub(crate) mod outline {
     /// Lines on which what a model's modes leave is written by residual terms, at the least: a fraction of

@@ -7,7 +7,7 @@ use crate::settings::ModalSettings;
 use crate::settings::modal::recorded::SPARE_ORDERS;
 use crate::work::Work;
 use crate::{Hypothesis, Observation};
-use jointscope_fixture::Quantity;
+use jointscope_fixture::{Fixture, Quantity};
 use jointscope_model_error::{RecordedModes, SizePrior, Structural, WeightedFrfs};
 use jointscope_modes::ModesOptions;
 use std::sync::OnceLock;
@@ -76,16 +76,19 @@ fn of(observation: &Observation) -> WeightedFrfs<'_> {
 /// The recording's modes, with the help of the model's where they are not resolved.
 pub(crate) fn recorded(observation: &Observation, nominal: &Hypothesis) -> Option<RecordedModes> {
     let fixture = nominal.to_fixture().ok()?;
-    let recording = of(observation);
-    // Where nothing but the FRFs tells their noise, every ripple looks like a mode: no more are asked for
-    // than a model may have.
-    let expected = || jointscope_model_error::modes_within(&fixture, observation.frfs());
+    let options = modes_options(observation, &fixture);
+    let recorded = RecordedModes::of(of(observation), &options, |alone| alone.expected_by(&fixture))?;
+    Some(recorded.beside(&fixture))
+}
+
+/// How the modes of a recording are looked for. Where nothing but the FRFs tells their noise, every ripple
+/// looks like a mode: no more are asked for than a model may have.
+pub(crate) fn modes_options(observation: &Observation, fixture: &Fixture) -> ModesOptions {
+    let expected = || jointscope_model_error::modes_within(fixture, observation.frfs());
     let orders = observation
         .has_scatter_for_noise()
         .then(expected)
         .flatten()
         .map(|modes| (2, 2 * modes + SPARE_ORDERS));
-    let options = ModesOptions { orders, ..ModesOptions::default() };
-    let recorded = RecordedModes::of(recording, &options, |alone| alone.expected_by(&fixture))?;
-    Some(recorded.beside(&fixture))
+    ModesOptions { orders, ..ModesOptions::default() }
 }

@@ -18,6 +18,7 @@ mod location;
 mod model_error;
 mod modes;
 mod real_beam;
+mod record_end;
 mod slips;
 mod stated;
 mod where_along;

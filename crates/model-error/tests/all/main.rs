@@ -7,5 +7,6 @@ mod common;
 mod effects;
 mod evidence;
 mod pairing;
+mod record_end;
 mod strikes;
 mod structural;

@@ -13,6 +13,7 @@ impl Remarks for Diagnosis {
         remarks.extend(only_one_frf(self));
         remarks.extend(of_noise(&self.observation));
         remarks.extend(lines_left_out(self));
+        remarks.extend(early_end(self));
         remarks.extend(falls_short(self));
         remarks.extend(beside_modes(self));
         remarks.extend(swapped_points(self));
@@ -47,6 +48,17 @@ fn lines_left_out(diagnosis: &Diagnosis) -> Option<String> {
         "Lines that contradict all others were left out: {}. No structure's modes make such a break in its FRFs; mains hum, a tone from elsewhere or \
          an overload does: look at the time signals there.",
         listed(&bands)
+    ))
+}
+
+/// Records that ended while the structure still rang.
+fn early_end(diagnosis: &Diagnosis) -> Option<String> {
+    let end = diagnosis.early_end?;
+    Some(format!(
+        "Records ended {} s after the blow, when {} % of the longest mode's motion was left: what was cut off is in no structure's FRFs, and was added from the modes \
+         of the recording itself. Records that are longer by half, or an exponential window over force and responses, need no such help.",
+        significant(end.after, 3),
+        significant(100.0 * end.left, 2)
     ))
 }
 

@@ -1,0 +1,161 @@
+//! Records that end while the structure still rings.
+//!
+//! A blow at t = 0 makes a mode ring, and at t = τ its record ends. The transform of the record lacks what
+//! followed: of a mode with pole λ, ω_d = Im λ, and residue A
+//!
+//! > H(s) − e^{−sτ}·A·(a/(s − λ) + a*/(s − λ*)),  a = λ²e^{λτ}/(2iω_d)
+//!
+//! is recorded, over however many blows it is averaged. Spectral lines lie at multiples of the reciprocal of
+//! the record's length T: had the blow come with the first sample, e^{−sτ} would be one on all of them, and
+//! the residue be turned by 1 − e^{λτ}. A blow that comes later, as triggers have it, leaves besides a ripple
+//! that no structure has in its FRFs. An exponential window is in the poles already. A blow of root mean
+//! square duration σ has the transform e^{s²σ²/2}, and FRFs are over the force: it excited the mode by
+//! e^{(λ² − s²)σ²/2} of what a line at s is divided by, and a is as much larger.
+//!
+//! The poles say how much is left of each mode, so τ, from the middle of the blow, and σ are the only
+//! unknowns. What is missing is told from the FRFs themselves. FRFs that were not estimated from such records,
+//! a model's or those of random excitation, have no such ripple, and only get worse for it.
+
+mod ringing;
+
+use crate::basis::TERMS;
+use crate::free_fit::FreeFit;
+use crate::of_recording::{free_fit, poles_of};
+use crate::recording::WeightedFrfs;
+use crate::settings::record_end::{
+    LEAST_GAIN, LEAST_LEFT, LEFT_OF_MISFIT, LONGEST_BLOW, NEAR_LINES, ROUNDS, SHORTEST, STEPS,
+};
+use jointscope_modes::ModesOptions;
+use jointscope_spectra::FrfSet;
+use num_complex::Complex64;
+use ringing::{Cut, Ringing, least_spacing, left, out_of_phase};
+use serde::Serialize;
+use std::f64::consts::TAU;
+
+/// The end of the records that FRFs were estimated from, which came while the structure still rang.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct RecordEnd {
+    /// Time from the blow to the end of the records, s.
+    pub after: f64,
+    /// What was left then of the mode that rings longest, as a share of its amplitude after the blow.
+    pub left: f64,
+}
+
+impl RecordEnd {
+    /// Where the records of a recording ended, and what each value of its FRFs lacks for it, FRF after FRF;
+    /// `None` where they tell of no such end.
+    pub fn of(recording: WeightedFrfs, options: &ModesOptions) -> Option<(Self, Vec<Complex64>)> {
+        let hz = recording.frfs.lines().hz();
+        let whole = 1.0 / least_spacing(hz)?;
+        let (inside, outside) = poles_of(recording, options)?;
+        let fit = FreeFit::converged(recording, inside.clone(), &outside, TERMS.0)?;
+        if left(&fit.poles[..fit.inside], SHORTEST * whole) < LEAST_LEFT {
+            return None;
+        }
+        let highest = hz[hz.len() - 1];
+        let area = Area {
+            after: (SHORTEST * whole, whole),
+            longest_blow: LONGEST_BLOW / (TAU * highest),
+            reach: 0.5 / (highest - hz[0]),
+        };
+        let ringing = Ringing { recording, fit: &fit };
+        // What resonances by themselves tell to some milliseconds the whole band tells as closely as it may.
+        let spread = (0.5 / (NEAR_LINES * least_spacing(hz)?) / area.reach).ceil() as i32;
+        let about = |after: f64| (-spread..=spread).map(move |k| after + f64::from(k) * area.reach);
+        let starts = ringing.ends(area.after, area.reach).into_iter().flat_map(about);
+        let starts = starts.filter(|after| (area.after.0..=area.after.1).contains(after));
+        let starts = starts.map(|after| Cut { after, blow: 0.5 * area.longest_blow });
+        let cost = |cut: &Cut| ringing.without_end(*cut).cost;
+        let start = starts.min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
+        let best = Restored::near(recording, &fit, &area, start)?;
+        let as_recorded = free_fit(recording, inside, &outside)?;
+        best.explains_more_than(&as_recorded, recording).then_some((best.end, best.missing))
+    }
+}
+
+/// Where an end is looked for.
+struct Area {
+    /// First and last time after the blow, s.
+    after: (f64, f64),
+    /// Root mean square duration of the longest blow, s.
+    longest_blow: f64,
+    /// How far an end may lie from where a search for it sets out, s.
+    reach: f64,
+}
+
+impl Area {
+    /// The end within a `share` of what may be, about a `start`, that leaves least, at the poles there are.
+    fn nearest(&self, ringing: &Ringing, start: Cut, share: f64) -> Cut {
+        let (mut best, mut cost) = (start, ringing.without_end(start).cost);
+        let mut share = share;
+        for _ in 0..STEPS {
+            for (after, blow) in [(self.reach, 0.0), (0.0, 0.5 * self.longest_blow)] {
+                let about = best;
+                for turn in [-share, -0.5 * share, 0.5 * share, share] {
+                    let other = Cut {
+                        after: (about.after + turn * after).clamp(self.after.0, self.after.1),
+                        blow: (about.blow + turn * blow).clamp(0.0, self.longest_blow),
+                    };
+                    let of_other = ringing.without_end(other).cost;
+                    if of_other < cost {
+                        (best, cost) = (other, of_other);
+                    }
+                }
+            }
+            share *= 0.5;
+        }
+        best
+    }
+}
+
+/// FRFs with what the end of their records took.
+struct Restored {
+    frfs: FrfSet,
+    fit: FreeFit,
+    end: RecordEnd,
+    /// What each value lacked.
+    missing: Vec<Complex64>,
+}
+
+impl Restored {
+    /// With an end about a `start`, and the poles that FRFs have which are so restored.
+    fn near(recording: WeightedFrfs, fit: &FreeFit, area: &Area, start: Cut) -> Option<Self> {
+        let (mut cut, mut share) = (start, 1.0);
+        let mut best: Option<Restored> = None;
+        for _ in 0..ROUNDS {
+            let fit = best.as_ref().map_or(fit, |best| &best.fit);
+            let ringing = Ringing { recording, fit };
+            cut = area.nearest(&ringing, cut, share);
+            share *= 0.5;
+            let missing = ringing.without_end(cut).missing;
+            let frfs = recording.frfs.clone().with_values(|place, value| value + missing[place]);
+            let (inside, outside) = fit.poles.split_at(fit.inside);
+            let of = WeightedFrfs { frfs: &frfs, weights: recording.weights };
+            let fit = FreeFit::converged(of, inside.to_vec(), outside, fit.terms)?;
+            let end = RecordEnd { after: cut.after, left: left(&fit.poles[..fit.inside], cut.after) };
+            best = Some(Restored { frfs, fit, end, missing });
+        }
+        best
+    }
+
+    /// Whether poles explain these FRFs, and real residues their modes, clearly better than they do the
+    /// `recording` as it is: beyond chance, and but for the lesser part of what they left.
+    fn explains_more_than(&self, as_recorded: &FreeFit, recording: WeightedFrfs) -> bool {
+        let (inside, outside) = self.fit.poles.split_at(self.fit.inside);
+        let of = WeightedFrfs { frfs: &self.frfs, weights: recording.weights };
+        let Some(restored) = free_fit(of, inside.to_vec(), outside) else { return false };
+        let values = 2.0 * recording.weights.iter().filter(|weight| **weight > 0.0).count() as f64;
+        let [before, after] = [as_recorded, &restored].map(|fit| fit.chi2_per_dof(recording).max(1.0));
+        let [phases_before, phases_after] = [as_recorded, &restored].map(all_out_of_phase);
+        let gain = values * (before / after).ln() + phases_before - phases_after;
+        let excess = |per_value: f64, phases: f64| values * (per_value - 1.0) + phases;
+        self.end.left > LEAST_LEFT
+            && gain > LEAST_GAIN
+            && excess(after, phases_after) < LEFT_OF_MISFIT * excess(before, phases_before)
+    }
+}
+
+/// What the phases of all modes' residues cost.
+fn all_out_of_phase(fit: &FreeFit) -> f64 {
+    (0..fit.inside).map(|mode| out_of_phase(fit.residues(mode))).sum()
+}
