@@ -9,13 +9,14 @@ use crate::settings::drawn::ASSUMED_RATIO;
 use crate::settings::frfs::MANY_POOR_LINES;
 use crate::settings::work::MOST_VALUES;
 use crate::{CheckOptions, FrfCheck, MassLine, ModelModes, Remark, Totals, frfs, has_dashpots, mass_line};
-use jointscope_diagnosis::{OddRecord, contradictory_lines};
+use jointscope_diagnosis::{OddRecord, contradictory_lines, restored};
 use jointscope_fixture::{Damping, Effect, Fixture, Quantity, RatiosOf};
 use jointscope_frf::noise::with_variances;
 use jointscope_lumped::{Instrument, accelerances};
 use jointscope_pipeline::{Error, MeasuredFrfs, Measurement};
 use jointscope_screening::{Oddity, Screened, screened};
 use jointscope_spectra::{FrfForm, FrfSet, in_sentence, in_text};
+use jointscope_wording::Says;
 use num_complex::Complex64;
 use serde::Serialize;
 
@@ -71,11 +72,18 @@ impl RecordingCheck {
         let (measured, screened) =
             with_force_as_meant(at_one_level(measurement, options)?, fixture, remarks)?;
         remarks.extend(screened.oddities.iter().map(of_oddity));
+        let frfs = match restored(&screened.frfs) {
+            Some((restored, end)) => {
+                remarks.push(Remark::odd("recording", end.says()));
+                restored
+            }
+            None => screened.frfs,
+        };
         let with_own_effects = fixture;
         let fixture = &drawn(measured.as_recorded(fixture)?);
-        let (measured_frfs, sources) = match with_variances(&screened.frfs) {
+        let (measured_frfs, sources) = match with_variances(&frfs) {
             Ok(found) => found,
-            Err(_) => (screened.frfs.clone(), Vec::new()),
+            Err(_) => (frfs.clone(), Vec::new()),
         };
         let modelled =
             accelerances(fixture, measured_frfs.pairs(), measured_frfs.lines(), Instrument::AsRecorded)
@@ -101,7 +109,7 @@ impl RecordingCheck {
         if with_own_effects.physics().iter().any(|effect| effect.kind.is_nonlinear()) {
             notes.push("effects of the fixture that depend on amplitude have no FRF: they are left aside beside the recording's".to_owned());
         }
-        let contradictory = contradictory(fixture, &screened.frfs, &mut notes);
+        let contradictory = contradictory(fixture, &measured_frfs, &mut notes);
         remarks.extend(frfs.iter().filter_map(of_coherence));
         let hz = measured_frfs.lines().hz();
         Ok(RecordingCheck {

@@ -103,7 +103,6 @@ impl Diagnosis {
         let fixture = &with_gains_of_records(fixture, frfs, options);
         let nominal = Hypothesis::nominal(fixture, options.exact);
         let (usable, observation) = Usable::of(frfs, options, &nominal, work)?;
-        watch.stage("looking for what followed after the end of the records");
         let (observation, early_end) = without_early_end(observation, &nominal);
         let diagnosed = |observation| Self::by_its_route(fixture, &usable, observation, watch);
         let diagnosis = diagnosed(observation)?;

@@ -109,6 +109,7 @@ pub use observation::Observation;
 pub use odd_record::OddRecord;
 pub use options::{DiagnosisError, DiagnosisOptions};
 pub use prediction::PredictionError;
+pub use record_end::restored;
 pub use search::Search;
 pub use settings::evidence::unlisted::MOST_UNLISTED;
 pub use settings::{

@@ -1,8 +1,31 @@
 //! FRFs of records that ended while the structure still rang.
 
 use crate::modal::modes_options;
+use crate::recorded_lines::is_short;
 use crate::{Hypothesis, Observation};
 use jointscope_model_error::{RecordEnd, WeightedFrfs};
+use jointscope_modes::ModesOptions;
+use jointscope_spectra::{FrfForm, FrfSet};
+use num_complex::Complex64;
+
+/// FRFs as if records had not ended before the structure was silent, and where they ended; `None` where they
+/// tell of no such end, and of more lines than a diagnosis uses: records as long hardly end too early.
+pub fn restored(frfs: &FrfSet) -> Option<(FrfSet, RecordEnd)> {
+    let observation = is_short(frfs).then(|| Observation::new(frfs, |_| true).ok())??;
+    let counted = observation.lines().len();
+    let (end, missing) = RecordEnd::of(weighted(&observation), &ModesOptions::default())?;
+    // Lines at 0 Hz, which come first, are none of an observation.
+    let at_rest = vec![Complex64::ZERO; frfs.lines().len() - counted];
+    let of_frfs = missing.chunks_exact(counted);
+    let missing: Vec<Complex64> =
+        of_frfs.flat_map(|missing| at_rest.iter().chain(missing)).copied().collect();
+    let accelerances = frfs.to_form(FrfForm::Accelerance).ok()?.plus(&missing);
+    Some((accelerances.to_form(frfs.form()).ok()?, end))
+}
+
+fn weighted(observation: &Observation) -> WeightedFrfs<'_> {
+    WeightedFrfs { frfs: observation.frfs(), weights: observation.weights() }
+}
 
 /// The observation as if records had not ended before the structure was silent, and where they ended; as it is
 /// where they tell of no such end.
@@ -12,8 +35,7 @@ pub(crate) fn without_early_end(
 ) -> (Observation, Option<RecordEnd>) {
     let restored = || {
         let options = modes_options(&observation, &nominal.to_fixture().ok()?);
-        let recording = WeightedFrfs { frfs: observation.frfs(), weights: observation.weights() };
-        let (end, missing) = RecordEnd::of(recording, &options)?;
+        let (end, missing) = RecordEnd::of(weighted(&observation), &options)?;
         Some((observation.plus(&missing)?, end))
     };
     match restored() {

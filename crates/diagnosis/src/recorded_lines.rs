@@ -9,12 +9,16 @@ use jointscope_spectra::FrfSet;
 /// Which lines of a recording are used: all of a short one; of a long one those about resonances, ever more
 /// sparsely with the distance, and evenly spread ones.
 pub(crate) fn lines_in_use(frfs: &FrfSet) -> Vec<bool> {
-    let n = frfs.lines().len();
-    let searched = frfs.pairs().len().min(SEARCHED_FRFS);
-    if n <= ALL_LINES && n * searched <= ALL_VALUES {
-        return vec![true; n];
+    match is_short(frfs) {
+        true => vec![true; frfs.lines().len()],
+        false => most_informative(frfs, KEPT_LINES),
     }
-    most_informative(frfs, KEPT_LINES)
+}
+
+/// Whether all lines of a recording are used.
+pub(crate) fn is_short(frfs: &FrfSet) -> bool {
+    let (lines, searched) = (frfs.lines().len(), frfs.pairs().len().min(SEARCHED_FRFS));
+    lines <= ALL_LINES && lines * searched <= ALL_VALUES
 }
 
 /// At most so many lines: those about resonances, ever more sparsely with the distance, and evenly spread

@@ -128,7 +128,7 @@ impl Restored {
             cut = area.nearest(&ringing, cut, share);
             share *= 0.5;
             let missing = ringing.without_end(cut).missing;
-            let frfs = recording.frfs.clone().with_values(|place, value| value + missing[place]);
+            let frfs = recording.frfs.clone().plus(&missing);
             let (inside, outside) = fit.poles.split_at(fit.inside);
             let of = WeightedFrfs { frfs: &frfs, weights: recording.weights };
             let fit = FreeFit::converged(of, inside.to_vec(), outside, fit.terms)?;

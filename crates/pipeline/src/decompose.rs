@@ -89,7 +89,7 @@ pub fn decompose(
 ) -> Result<Decomposition, Error> {
     let measured = MeasuredFrfs::of(&measurement, &options.estimate);
     drop(measurement); // as much memory as the recording
-    let MeasuredFrfs { frfs, notes, window_decay, hammer_test } = measured?.screened(fixture)?;
+    let MeasuredFrfs { frfs, notes, window_decay, hammer_test } = measured?.screened(fixture)?.restored();
     let fixture = MeasuredFrfs::under_window(fixture, window_decay)?;
     let asked = &options.analysis;
     let count = fixture.joints().len();

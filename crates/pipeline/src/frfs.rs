@@ -1,6 +1,7 @@
 //! The FRFs of a test at one level.
 
 use crate::{Error, HammerTest, Measurement};
+use jointscope_diagnosis::restored;
 use jointscope_estimation::EstimateOptions;
 use jointscope_fixture::{Effect, EffectKind, Fixture, FixtureError, Place};
 use jointscope_recordings::{Hits, Recording};
@@ -77,6 +78,15 @@ impl MeasuredFrfs {
             });
             slip.map_or(Ok(()), |slip| Err(slip.into()))
         })
+    }
+
+    /// The same as if records had not ended before the structure was silent; said in the notes.
+    pub(crate) fn restored(mut self) -> Self {
+        if let Some((frfs, end)) = restored(&self.frfs) {
+            self.notes.push(end.says());
+            self.frfs = frfs;
+        }
+        self
     }
 
     fn put_right(

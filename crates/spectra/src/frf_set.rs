@@ -280,6 +280,12 @@ impl FrfSet {
         self
     }
 
+    /// The set with so much added to its values, FRF after FRF: as well known as before.
+    pub fn plus(mut self, added: &[Complex64]) -> Self {
+        self.values.iter_mut().zip(added).for_each(|(value, added)| *value += added);
+        self
+    }
+
     /// The set at other frequencies, as many as it has lines.
     pub fn with_lines(mut self, lines: SpectralLines) -> Self {
         if lines.len() == self.lines.len() {

@@ -5,11 +5,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 use jointscope::check::fixture_frfs;
+use jointscope::diagnosis::restored;
 use jointscope::report::format::quantity;
 use jointscope::report::{PageContext, modes_report};
 use jointscope::spectra::in_text;
 use jointscope::{
-    Band, MeasuredDamping, ModalAnalysis, ModesOptions, Remarks, measured_damping, modes_file, rebuilt_frfs,
+    Band, MeasuredDamping, ModalAnalysis, ModesOptions, Remarks, Says, measured_damping, modes_file,
+    rebuilt_frfs,
 };
 use serde_json::{Value, json};
 
@@ -63,8 +65,11 @@ pub(super) fn run(arguments: &ModesArguments) -> Result<String, Refusal> {
         orders: arguments.orders,
         pick: arguments.pick.clone(),
     };
-    let analysis = ModalAnalysis::of(frfs, &options).map_err(|error| arguments.recording.refusal(error))?;
     let mut notes = recording.notes.clone();
+    let restored = restored(frfs);
+    notes.extend(restored.as_ref().map(|(_, end)| end.says()));
+    let frfs = restored.as_ref().map_or(frfs, |(frfs, _)| frfs);
+    let analysis = ModalAnalysis::of(frfs, &options).map_err(|error| arguments.recording.refusal(error))?;
     let damping = match fixture.as_ref().map(|fixture| (fixture, measured_damping(fixture, &analysis))) {
         None => None,
         Some((_, Ok(damping))) => Some(damping),

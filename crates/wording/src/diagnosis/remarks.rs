@@ -1,9 +1,9 @@
 //! What to know besides of a diagnosis: what the test was like, and what follows for how sure it is.
 
-use crate::Remarks;
 use crate::finding::with_fitted_size;
 use crate::numbers::{listed, significant};
-use jointscope_diagnosis::{Diagnosis, Observation, Tried};
+use crate::{Remarks, Says};
+use jointscope_diagnosis::{Diagnosis, Observation, RecordEnd, Tried};
 use jointscope_frf::noise::NoiseSource;
 
 /// What the reader must know of the test itself: too few FRFs, noise that had to be estimated.
@@ -13,7 +13,7 @@ impl Remarks for Diagnosis {
         remarks.extend(only_one_frf(self));
         remarks.extend(of_noise(&self.observation));
         remarks.extend(lines_left_out(self));
-        remarks.extend(early_end(self));
+        remarks.extend(self.early_end.map(|end| end.says()));
         remarks.extend(falls_short(self));
         remarks.extend(beside_modes(self));
         remarks.extend(swapped_points(self));
@@ -51,15 +51,15 @@ fn lines_left_out(diagnosis: &Diagnosis) -> Option<String> {
     ))
 }
 
-/// Records that ended while the structure still rang.
-fn early_end(diagnosis: &Diagnosis) -> Option<String> {
-    let end = diagnosis.early_end?;
-    Some(format!(
-        "Records ended {} s after the blow, when {} % of the longest mode's motion was left: what was cut off is in no structure's FRFs, and was added from the modes \
-         of the recording itself. Records that are longer by half, or an exponential window over force and responses, need no such help.",
-        significant(end.after, 3),
-        significant(100.0 * end.left, 2)
-    ))
+impl Says for RecordEnd {
+    fn says(&self) -> String {
+        format!(
+            "Records ended {} s after the blow, when {} % of the longest mode's motion was left: what was cut off is in no structure's FRFs, and was added from the modes \
+             of the recording itself. Records that are longer by half, or an exponential window over force and responses, need no such help.",
+            significant(self.after, 3),
+            significant(100.0 * self.left, 2)
+        )
+    }
 }
 
 /// Noise of the force, which H1 takes for a larger force.
