@@ -35,9 +35,9 @@ use std::f64::consts::TAU;
 /// The end of the records that FRFs were estimated from, which came while the structure still rang.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct RecordEnd {
-    /// Time from the blow to the end of the records, s.
+    /// Time from the blow to the end of the records, s: of several references the mean.
     pub after: f64,
-    /// What was left then of the mode that rings longest, as a share of its amplitude after the blow.
+    /// What was left then of the mode that still rang loudest, as a share of its amplitude after the blow.
     pub left: f64,
 }
 
@@ -58,7 +58,8 @@ impl RecordEnd {
             longest_blow: LONGEST_BLOW / (TAU * highest),
             reach: 0.5 / (highest - hz[0]),
         };
-        let ringing = Ringing { recording, fit: &fit };
+        let all: Vec<usize> = (0..recording.frfs.pairs().len()).collect();
+        let ringing = Ringing { recording, fit: &fit, frfs: &all };
         // What resonances by themselves tell to some milliseconds the whole band tells as closely as it may.
         let spread = (0.5 / (NEAR_LINES * least_spacing(hz)?) / area.reach).ceil() as i32;
         let about = |after: f64| (-spread..=spread).map(move |k| after + f64::from(k) * area.reach);
@@ -118,22 +119,36 @@ struct Restored {
 }
 
 impl Restored {
-    /// With an end about a `start`, and the poles that FRFs have which are so restored.
+    /// With an end about a `start`, and the poles that FRFs have which are so restored. All references have
+    /// one at first, then each its own: a blow on another spot is longer or shorter.
     fn near(recording: WeightedFrfs, fit: &FreeFit, area: &Area, start: Cut) -> Option<Self> {
-        let (mut cut, mut share) = (start, 1.0);
+        let n = recording.frfs.lines().len();
+        let pairs = recording.frfs.pairs();
+        let mut references: Vec<Vec<usize>> = vec![(0..pairs.len()).collect()];
+        let (mut cuts, mut share) = (vec![start], 1.0);
         let mut best: Option<Restored> = None;
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS {
             let fit = best.as_ref().map_or(fit, |best| &best.fit);
-            let ringing = Ringing { recording, fit };
-            cut = area.nearest(&ringing, cut, share);
-            share *= 0.5;
-            let missing = ringing.without_end(cut).missing;
+            let mut missing = vec![Complex64::ZERO; n * pairs.len()];
+            for (frfs, cut) in references.iter().zip(&mut cuts) {
+                let ringing = Ringing { recording, fit, frfs };
+                *cut = area.nearest(&ringing, *cut, share);
+                for (own, &frf) in ringing.without_end(*cut).missing.chunks_exact(n).zip(frfs) {
+                    missing[frf * n..][..n].copy_from_slice(own);
+                }
+            }
             let frfs = recording.frfs.clone().plus(&missing);
             let (inside, outside) = fit.poles.split_at(fit.inside);
             let of = WeightedFrfs { frfs: &frfs, weights: recording.weights };
             let fit = FreeFit::converged(of, inside.to_vec(), outside, fit.terms)?;
-            let end = RecordEnd { after: cut.after, left: left(&fit.poles[..fit.inside], cut.after) };
+            let after = cuts.iter().map(|cut| cut.after).sum::<f64>() / cuts.len() as f64;
+            let end = RecordEnd { after, left: left_of_loudest(&fit, after) };
             best = Some(Restored { frfs, fit, end, missing });
+            if round == 0 {
+                references = by_reference(recording.frfs);
+                cuts = vec![cuts[0]; references.len()];
+            }
+            share *= 0.5;
         }
         best
     }
@@ -153,6 +168,31 @@ impl Restored {
             && gain > LEAST_GAIN
             && excess(after, phases_after) < LEFT_OF_MISFIT * excess(before, phases_before)
     }
+}
+
+/// The FRFs of each reference, by their index.
+fn by_reference(frfs: &FrfSet) -> Vec<Vec<usize>> {
+    let mut all: Vec<Vec<usize>> = Vec::new();
+    let pairs = frfs.pairs();
+    for (index, pair) in pairs.iter().enumerate() {
+        match all.iter_mut().find(|own| pairs[own[0]].reference == pair.reference) {
+            Some(own) => own.push(index),
+            None => all.push(vec![index]),
+        }
+    }
+    all
+}
+
+/// What was left of the mode that rang loudest at a time after the blow.
+fn left_of_loudest(fit: &FreeFit, after: f64) -> f64 {
+    let of = |mode: usize| {
+        let lambda = fit.poles[mode].lambda();
+        let left = (lambda.re * after).exp();
+        let squares: f64 = fit.residues(mode).map(|residue| residue.norm_sqr()).sum();
+        (left, squares * (left * lambda.norm()).powi(2))
+    };
+    let loudest = (0..fit.inside).map(of).max_by(|a, b| a.1.total_cmp(&b.1));
+    loudest.map_or(0.0, |(left, _)| left)
 }
 
 /// What the phases of all modes' residues cost.

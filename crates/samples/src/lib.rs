@@ -19,7 +19,7 @@ mod fixtures;
 mod records;
 
 pub use fixtures::{TWO_BLOCKS, TWO_STOREYS, two_blocks_damped, with};
-pub use records::of_records;
+pub use records::{Blow, of_records};
 
 use jointscope_spectra::{FrfPair, FrfSet};
 use num_complex::Complex64;

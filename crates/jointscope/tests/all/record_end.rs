@@ -16,7 +16,7 @@ fn cut_off(believed: &Fixture, effects: Vec<Effect>, seed: u64) -> FrfSet {
     let fine = SpectralLines::even(0.25, 0.25, 12_000).unwrap();
     let exact = frfs(&truth, &common::four_pairs(), &fine, Instrument::AsDescribed).unwrap();
     common::hammer(seed)
-        .measure(&of_records(&exact, &SpectralLines::even(5.0, 2.5, 477).unwrap(), (0.0104, 8e-4)))
+        .measure(&of_records(&exact, &SpectralLines::even(5.0, 2.5, 477).unwrap(), |_| (0.0104, 8e-4)))
         .unwrap()
 }
 

@@ -7,15 +7,17 @@ use crate::settings::record_end::{MOST_STARTS, MOST_TURNS, NEAR_LINES, QUADRATUR
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// A recording, and modes that still rang at its end.
+/// FRFs of a recording, and modes that still rang at its end.
 pub(super) struct Ringing<'a> {
     pub recording: WeightedFrfs<'a>,
     pub fit: &'a FreeFit,
+    /// The FRFs, by their index.
+    pub frfs: &'a [usize],
 }
 
 /// FRFs without an end of their records.
 pub(super) struct WithoutEnd {
-    /// What each value lacks.
+    /// What each value lacks, FRF after FRF.
     pub missing: Vec<Complex64>,
     /// χ² of the modes at their poles, and what their residues cost that are out of phase.
     pub cost: f64,
@@ -93,7 +95,8 @@ impl Ringing<'_> {
         let near: Vec<usize> = (0..n).filter(is_near).collect();
         let mut alike = vec![vec![Complex64::ZERO; near.len()]; self.modes().len()];
         let mut squares = vec![0.0; self.modes().len()];
-        for (frf, weights) in self.recording.weights.chunks_exact(n).enumerate() {
+        for &frf in self.frfs {
+            let weights = &self.recording.weights[frf * n..][..n];
             let (residues, left) = self.fit.split(frf, self.recording.frfs.values(frf));
             for (mode, pole) in self.modes().iter().enumerate() {
                 for (alike, &line) in alike[mode].iter_mut().zip(&near) {
@@ -131,9 +134,9 @@ impl Ringing<'_> {
         let turns =
             (SETTLED.ln() / left(self.modes(), cut.after).ln()).ceil().clamp(1.0, MOST_TURNS) as usize;
         let tails: Vec<Vec<Complex64>> = self.modes().iter().map(tail).collect();
-        let mut all = WithoutEnd { missing: Vec::with_capacity(self.recording.weights.len()), cost: 0.0 };
+        let mut all = WithoutEnd { missing: Vec::with_capacity(n * self.frfs.len()), cost: 0.0 };
         let mut of_frfs = Vec::new();
-        for frf in 0..self.recording.frfs.pairs().len() {
+        for &frf in self.frfs {
             let values = self.recording.frfs.values(frf);
             let mut missing = vec![Complex64::ZERO; n];
             let (mut residues, mut left) = self.fit.split(frf, values);

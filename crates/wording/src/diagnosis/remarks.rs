@@ -54,7 +54,7 @@ fn lines_left_out(diagnosis: &Diagnosis) -> Option<String> {
 impl Says for RecordEnd {
     fn says(&self) -> String {
         format!(
-            "Records ended {} s after the blow, when {} % of the longest mode's motion was left: what was cut off is in no structure's FRFs, and was added from the modes \
+            "Records ended {} s after the blow, when {} % of the loudest mode's motion was left: what was cut off is in no structure's FRFs, and was added from the modes \
              of the recording itself. Records that are longer by half, or an exponential window over force and responses, need no such help.",
             significant(self.after, 3),
             significant(100.0 * self.left, 2)
