@@ -28,7 +28,7 @@ use crate::settings::record_end::{
 use jointscope_modes::ModesOptions;
 use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
-use ringing::{Cut, Ringing, least_spacing, left, out_of_phase};
+use ringing::{Cut, Ringing, least_spacing, left};
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -153,20 +153,17 @@ impl Restored {
         best
     }
 
-    /// Whether poles explain these FRFs, and real residues their modes, clearly better than they do the
-    /// `recording` as it is: beyond chance, and but for the lesser part of what they left.
+    /// Whether poles explain these FRFs clearly better than they do the `recording` as it is: beyond chance, and
+    /// but for the lesser part of what they left.
     fn explains_more_than(&self, as_recorded: &FreeFit, recording: WeightedFrfs) -> bool {
         let (inside, outside) = self.fit.poles.split_at(self.fit.inside);
         let of = WeightedFrfs { frfs: &self.frfs, weights: recording.weights };
         let Some(restored) = free_fit(of, inside.to_vec(), outside) else { return false };
         let values = 2.0 * recording.weights.iter().filter(|weight| **weight > 0.0).count() as f64;
         let [before, after] = [as_recorded, &restored].map(|fit| fit.chi2_per_dof(recording).max(1.0));
-        let [phases_before, phases_after] = [as_recorded, &restored].map(all_out_of_phase);
-        let gain = values * (before / after).ln() + phases_before - phases_after;
-        let excess = |per_value: f64, phases: f64| values * (per_value - 1.0) + phases;
         self.end.left > LEAST_LEFT
-            && gain > LEAST_GAIN
-            && excess(after, phases_after) < LEFT_OF_MISFIT * excess(before, phases_before)
+            && values * (before / after).ln() > LEAST_GAIN
+            && after - 1.0 < LEFT_OF_MISFIT * (before - 1.0)
     }
 }
 
@@ -193,9 +190,4 @@ fn left_of_loudest(fit: &FreeFit, after: f64) -> f64 {
     };
     let loudest = (0..fit.inside).map(of).max_by(|a, b| a.1.total_cmp(&b.1));
     loudest.map_or(0.0, |(left, _)| left)
-}
-
-/// What the phases of all modes' residues cost.
-fn all_out_of_phase(fit: &FreeFit) -> f64 {
-    (0..fit.inside).map(|mode| out_of_phase(fit.residues(mode))).sum()
 }

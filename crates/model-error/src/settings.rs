@@ -95,8 +95,9 @@ pub(crate) mod record_end {
     pub(crate) const ROUNDS: usize = 3;
     /// Times the area in which the end lies is halved at given poles.
     pub(crate) const STEPS: usize = 5;
-    /// Phase of residues, rad, that structures have by themselves: structural damping leaves a damping ratio.
-    pub(crate) const QUADRATURE: f64 = 0.01;
+    /// Phase of residues, rad, that structures and channels have by themselves. It tells ends apart that leave as
+    /// much, and no end from none: blocks on foam have phases of a third of one.
+    pub(crate) const QUADRATURE: f64 = 0.03;
     /// What an end must gain in χ²: a thousand times that are tried gain 14 by chance.
     pub(crate) const LEAST_GAIN: f64 = 40.0;
     /// Share of what no poles explain that may be left: what is no end is not taken for one because it

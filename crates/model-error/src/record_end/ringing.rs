@@ -53,7 +53,7 @@ pub(super) fn left(modes: &[Pole], after: f64) -> f64 {
 
 /// What it costs that the residues of a mode have a phase in common: the square of that, in units of what
 /// structures' are. Light damping leaves residues nearly real.
-pub(super) fn out_of_phase(residues: impl Iterator<Item = Complex64>) -> f64 {
+fn out_of_phase(residues: impl Iterator<Item = Complex64>) -> f64 {
     let of = |sums: (f64, f64), a: Complex64| (sums.0 + a.re * a.im, sums.1 + a.norm_sqr());
     let (along, square) = residues.fold((0.0, f64::MIN_POSITIVE), of);
     (along / square / QUADRATURE).powi(2)
