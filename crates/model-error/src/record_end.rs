@@ -52,6 +52,10 @@ impl RecordEnd {
         if left(&fit.poles[..fit.inside], SHORTEST * whole) < LEAST_LEFT {
             return None;
         }
+        let as_recorded = free_fit(recording, inside, &outside)?;
+        if most_gain(&as_recorded, recording) < LEAST_GAIN {
+            return None;
+        }
         let highest = hz[hz.len() - 1];
         let area = Area {
             after: (SHORTEST * whole, whole),
@@ -66,10 +70,9 @@ impl RecordEnd {
         let starts = ringing.ends(area.after, area.reach).into_iter().flat_map(about);
         let starts = starts.filter(|after| (area.after.0..=area.after.1).contains(after));
         let starts = starts.map(|after| Cut { after, blow: 0.5 * area.longest_blow });
-        let cost = |cut: &Cut| ringing.without_end(*cut).cost;
-        let start = starts.min_by(|a, b| cost(a).total_cmp(&cost(b)))?;
+        let costs = starts.map(|cut| (cut, ringing.without_end(cut).cost));
+        let (start, _) = costs.min_by(|a, b| a.1.total_cmp(&b.1))?;
         let best = Restored::near(recording, &fit, &area, start)?;
-        let as_recorded = free_fit(recording, inside, &outside)?;
         best.explains_more_than(&as_recorded, recording).then_some((best.end, best.missing))
     }
 }
@@ -159,12 +162,17 @@ impl Restored {
         let (inside, outside) = self.fit.poles.split_at(self.fit.inside);
         let of = WeightedFrfs { frfs: &self.frfs, weights: recording.weights };
         let Some(restored) = free_fit(of, inside.to_vec(), outside) else { return false };
-        let values = 2.0 * recording.weights.iter().filter(|weight| **weight > 0.0).count() as f64;
         let [before, after] = [as_recorded, &restored].map(|fit| fit.chi2_per_dof(recording).max(1.0));
         self.end.left > LEAST_LEFT
-            && values * (before / after).ln() > LEAST_GAIN
+            && most_gain(as_recorded, recording) - most_gain(&restored, recording) > LEAST_GAIN
             && after - 1.0 < LEFT_OF_MISFIT * (before - 1.0)
     }
+}
+
+/// What χ² would gain where nothing were left but noise, whose size nobody knows.
+fn most_gain(fit: &FreeFit, recording: WeightedFrfs) -> f64 {
+    let values = 2.0 * recording.weights.iter().filter(|weight| **weight > 0.0).count() as f64;
+    values * fit.chi2_per_dof(recording).max(1.0).ln()
 }
 
 /// The FRFs of each reference, by their index.
