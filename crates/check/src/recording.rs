@@ -72,7 +72,7 @@ impl RecordingCheck {
         let (measured, screened) =
             with_force_as_meant(at_one_level(measurement, options)?, fixture, remarks)?;
         remarks.extend(screened.oddities.iter().map(of_oddity));
-        let frfs = match restored(&screened.frfs) {
+        let recorded = match restored(&screened.frfs) {
             Some((restored, end)) => {
                 remarks.push(Remark::odd("recording", end.says()));
                 restored
@@ -81,9 +81,9 @@ impl RecordingCheck {
         };
         let with_own_effects = fixture;
         let fixture = &drawn(measured.as_recorded(fixture)?);
-        let (measured_frfs, sources) = match with_variances(&frfs) {
+        let (measured_frfs, sources) = match with_variances(&recorded) {
             Ok(found) => found,
-            Err(_) => (frfs.clone(), Vec::new()),
+            Err(_) => (recorded.clone(), Vec::new()),
         };
         let modelled =
             accelerances(fixture, measured_frfs.pairs(), measured_frfs.lines(), Instrument::AsRecorded)
@@ -109,7 +109,7 @@ impl RecordingCheck {
         if with_own_effects.physics().iter().any(|effect| effect.kind.is_nonlinear()) {
             notes.push("effects of the fixture that depend on amplitude have no FRF: they are left aside beside the recording's".to_owned());
         }
-        let contradictory = contradictory(fixture, &measured_frfs, &mut notes);
+        let contradictory = contradictory(fixture, &recorded, &mut notes);
         remarks.extend(frfs.iter().filter_map(of_coherence));
         let hz = measured_frfs.lines().hz();
         Ok(RecordingCheck {

@@ -103,7 +103,7 @@ impl Diagnosis {
         let fixture = &with_gains_of_records(fixture, frfs, options);
         let nominal = Hypothesis::nominal(fixture, options.exact);
         let (usable, observation) = Usable::of(frfs, options, &nominal, work)?;
-        let (observation, early_end) = without_early_end(observation, &nominal);
+        let (observation, early_end) = without_early_end(observation, fixture);
         let diagnosed = |observation| Self::by_its_route(fixture, &usable, observation, watch);
         let diagnosis = diagnosed(observation)?;
         let diagnosis = match options.baseline {
@@ -130,8 +130,7 @@ impl Diagnosis {
         let fitter = Fitter { observation: searched, settings: &options.settings, watch };
         let mut parts = match &options.baseline {
             Some(baseline) => {
-                let nominal = Hypothesis::nominal(fixture, options.exact);
-                let (baseline, _) = without_early_end(usable.part_of_baseline(baseline)?, &nominal);
+                let (baseline, _) = without_early_end(usable.part_of_baseline(baseline)?, fixture);
                 changed_since(&fitter, &observation, baseline, (fixture, options.exact))?
             }
             None => routes::judged(&fitter, fixture, options)?,

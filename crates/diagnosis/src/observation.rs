@@ -6,6 +6,7 @@ use crate::work::Work;
 use jointscope_frf::Drift;
 use jointscope_frf::noise::{NoiseSource, known};
 use jointscope_inference::{autocorrelation, inflated_weight};
+use jointscope_model_error::WeightedFrfs;
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectraError, SpectralLines};
 use num_complex::Complex64;
 use std::borrow::Cow;
@@ -187,6 +188,11 @@ impl Observation {
         };
         let (noise, signal) = counted.fold((0.0, 0.0), sum);
         if signal > 0.0 { (noise / signal).sqrt() } else { f64::INFINITY }
+    }
+
+    /// The FRFs in use with their weights, as their modes are taken.
+    pub(crate) fn weighted(&self) -> WeightedFrfs<'_> {
+        WeightedFrfs { frfs: &self.frfs, weights: &self.weight }
     }
 
     /// The FRFs in use, accelerances.

@@ -1,9 +1,10 @@
 //! FRFs of records that ended while the structure still rang.
 
+use crate::Observation;
 use crate::modal::modes_options;
 use crate::recorded_lines::is_short;
-use crate::{Hypothesis, Observation};
-use jointscope_model_error::{RecordEnd, WeightedFrfs};
+use jointscope_fixture::Fixture;
+use jointscope_model_error::RecordEnd;
 use jointscope_modes::ModesOptions;
 use jointscope_spectra::{FrfForm, FrfSet};
 use num_complex::Complex64;
@@ -13,7 +14,7 @@ use num_complex::Complex64;
 pub fn restored(frfs: &FrfSet) -> Option<(FrfSet, RecordEnd)> {
     let observation = is_short(frfs).then(|| Observation::new(frfs, |_| true).ok())??;
     let counted = observation.lines().len();
-    let (end, missing) = RecordEnd::of(weighted(&observation), &ModesOptions::default())?;
+    let (end, missing) = RecordEnd::of(observation.weighted(), &ModesOptions::default())?;
     // Lines at 0 Hz, which come first, are none of an observation.
     let at_rest = vec![Complex64::ZERO; frfs.lines().len() - counted];
     let of_frfs = missing.chunks_exact(counted);
@@ -23,19 +24,15 @@ pub fn restored(frfs: &FrfSet) -> Option<(FrfSet, RecordEnd)> {
     Some((accelerances.to_form(frfs.form()).ok()?, end))
 }
 
-fn weighted(observation: &Observation) -> WeightedFrfs<'_> {
-    WeightedFrfs { frfs: observation.frfs(), weights: observation.weights() }
-}
-
 /// The observation as if records had not ended before the structure was silent, and where they ended; as it is
 /// where they tell of no such end.
 pub(crate) fn without_early_end(
     observation: Observation,
-    nominal: &Hypothesis,
+    fixture: &Fixture,
 ) -> (Observation, Option<RecordEnd>) {
     let restored = || {
-        let options = modes_options(&observation, &nominal.to_fixture().ok()?);
-        let (end, missing) = RecordEnd::of(weighted(&observation), &options)?;
+        let options = modes_options(&observation, fixture);
+        let (end, missing) = RecordEnd::of(observation.weighted(), &options)?;
         Some((observation.plus(&missing)?, end))
     };
     match restored() {

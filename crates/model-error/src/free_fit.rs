@@ -24,6 +24,7 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Poles, and each FRF's fit with them.
+#[derive(Clone)]
 pub(crate) struct FreeFit {
     pub poles: Vec<Pole>,
     /// How many of the poles are modes in the band; they come first.
@@ -48,6 +49,7 @@ fn residual_columns(poles: &[Pole], resolved_from: f64) -> [Vec<usize>; 2] {
 }
 
 /// One FRF at given poles.
+#[derive(Clone)]
 struct FrfFit {
     projection: Projection,
     coefficients: Vec<Complex64>,
@@ -138,8 +140,7 @@ impl FreeFit {
     }
 
     pub(crate) fn chi2_per_dof(&self, recording: WeightedFrfs) -> f64 {
-        let degrees = 2.0 * recording.weights.iter().filter(|w| **w > 0.0).count() as f64;
-        self.chi2 / (degrees - self.unknowns() as f64).max(1.0)
+        self.chi2 / (recording.degrees() - self.unknowns() as f64).max(1.0)
     }
 
     /// With the poles that Gauss–Newton steps lead to.

@@ -12,6 +12,7 @@
 //!    bound times χ² per degree of freedom where that is above one. Modes too low to be told from a mass line
 //!    are a part of it; where there are any, lines begin above them, and mass lines have the errors of their
 //!    shapes ([`RecordedModes::beside`]).
+//!    What FRFs lack whose records ended while modes still rang, [`RecordEnd::of`] tells beforehand.
 //! 2. **Model.** [`ModelledModes::of`] finds a fixture's poles by the peaks of its FRFs and the modes of the
 //!    recording, follows them by analytic continuation of the FRFs as they would be recorded, and takes
 //!    residues by contour integrals; [`ModelledModes::near`] sets out from poles that are known.

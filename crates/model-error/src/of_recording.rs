@@ -24,10 +24,14 @@ pub(crate) fn poles_of(recording: WeightedFrfs, options: &ModesOptions) -> Optio
     Some((poles(&analysis.modes), poles(&analysis.outside)))
 }
 
-/// The free fit that is begun with poles in and out of the band, with what else the recording asks for: modes
-/// just outside the band, then more residual terms, then modes in the band that were missed.
-pub(crate) fn free_fit(recording: WeightedFrfs, inside: Vec<Pole>, outside: &[Pole]) -> Option<FreeFit> {
-    let mut fit = FreeFit::converged(recording, inside, outside, TERMS.0)?;
+/// The free fit that is begun with poles in and out of the band, with what else the recording asks for.
+fn free_fit(recording: WeightedFrfs, inside: Vec<Pole>, outside: &[Pole]) -> Option<FreeFit> {
+    FreeFit::converged(recording, inside, outside, TERMS.0).map(|fit| completed(recording, fit))
+}
+
+/// A free fit with what else the recording asks for: modes just outside the band, then more residual terms,
+/// then modes in the band that were missed.
+pub(crate) fn completed(recording: WeightedFrfs, mut fit: FreeFit) -> FreeFit {
     let lines = recording.frfs.lines().hz();
     let (low, high) = (TAU * lines[0], TAU * lines[lines.len() - 1]);
     let beyond = |by: f64| Pole { omega: high * by, damping_ratio: DAMPING_RATIO_ABOVE };
@@ -42,7 +46,7 @@ pub(crate) fn free_fit(recording: WeightedFrfs, inside: Vec<Pole>, outside: &[Po
             _ => break,
         }
     }
-    Some(fit.with_missed(recording))
+    fit.with_missed(recording)
 }
 
 /// A free fit with poles that a model expects besides, one after the other. Where that leaves more than

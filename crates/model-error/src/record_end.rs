@@ -20,7 +20,7 @@ mod ringing;
 
 use crate::basis::TERMS;
 use crate::free_fit::FreeFit;
-use crate::of_recording::{free_fit, poles_of};
+use crate::of_recording::{completed, poles_of};
 use crate::recording::WeightedFrfs;
 use crate::settings::record_end::{
     LEAST_GAIN, LEAST_LEFT, LEFT_OF_MISFIT, LONGEST_BLOW, NEAR_LINES, ROUNDS, SHORTEST, STEPS,
@@ -28,7 +28,7 @@ use crate::settings::record_end::{
 use jointscope_modes::ModesOptions;
 use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
-use ringing::{Cut, Ringing, least_spacing, left};
+use ringing::{Cut, Ringing, left};
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -46,13 +46,14 @@ impl RecordEnd {
     /// `None` where they tell of no such end.
     pub fn of(recording: WeightedFrfs, options: &ModesOptions) -> Option<(Self, Vec<Complex64>)> {
         let hz = recording.frfs.lines().hz();
-        let whole = 1.0 / least_spacing(hz)?;
+        let spacing = recording.frfs.lines().least_spacing()?;
+        let whole = 1.0 / spacing;
         let (inside, outside) = poles_of(recording, options)?;
-        let fit = FreeFit::converged(recording, inside.clone(), &outside, TERMS.0)?;
+        let fit = FreeFit::converged(recording, inside, &outside, TERMS.0)?;
         if left(&fit.poles[..fit.inside], SHORTEST * whole) < LEAST_LEFT {
             return None;
         }
-        let as_recorded = free_fit(recording, inside, &outside)?;
+        let as_recorded = completed(recording, fit.clone());
         if most_gain(&as_recorded, recording) < LEAST_GAIN {
             return None;
         }
@@ -65,7 +66,7 @@ impl RecordEnd {
         let all: Vec<usize> = (0..recording.frfs.pairs().len()).collect();
         let ringing = Ringing { recording, fit: &fit, frfs: &all };
         // What resonances by themselves tell to some milliseconds the whole band tells as closely as it may.
-        let spread = (0.5 / (NEAR_LINES * least_spacing(hz)?) / area.reach).ceil() as i32;
+        let spread = (0.5 / (NEAR_LINES * spacing) / area.reach).ceil() as i32;
         let about = |after: f64| (-spread..=spread).map(move |k| after + f64::from(k) * area.reach);
         let starts = ringing.ends(area.after, area.reach).into_iter().flat_map(about);
         let starts = starts.filter(|after| (area.after.0..=area.after.1).contains(after));
@@ -159,9 +160,8 @@ impl Restored {
     /// Whether poles explain these FRFs clearly better than they do the `recording` as it is: beyond chance, and
     /// but for the lesser part of what they left.
     fn explains_more_than(&self, as_recorded: &FreeFit, recording: WeightedFrfs) -> bool {
-        let (inside, outside) = self.fit.poles.split_at(self.fit.inside);
         let of = WeightedFrfs { frfs: &self.frfs, weights: recording.weights };
-        let Some(restored) = free_fit(of, inside.to_vec(), outside) else { return false };
+        let restored = completed(of, self.fit.clone());
         let [before, after] = [as_recorded, &restored].map(|fit| fit.chi2_per_dof(recording).max(1.0));
         self.end.left > LEAST_LEFT
             && most_gain(as_recorded, recording) - most_gain(&restored, recording) > LEAST_GAIN
@@ -171,8 +171,7 @@ impl Restored {
 
 /// What χ² would gain where nothing were left but noise, whose size nobody knows.
 fn most_gain(fit: &FreeFit, recording: WeightedFrfs) -> f64 {
-    let values = 2.0 * recording.weights.iter().filter(|weight| **weight > 0.0).count() as f64;
-    values * fit.chi2_per_dof(recording).max(1.0).ln()
+    recording.degrees() * fit.chi2_per_dof(recording).max(1.0).ln()
 }
 
 /// The FRFs of each reference, by their index.

@@ -13,6 +13,13 @@ pub struct WeightedFrfs<'a> {
     pub weights: &'a [f64],
 }
 
+impl WeightedFrfs<'_> {
+    /// Number of real values that count.
+    pub(crate) fn degrees(&self) -> f64 {
+        2.0 * self.weights.iter().filter(|weight| **weight > 0.0).count() as f64
+    }
+}
+
 /// Frequency, Hz, from which on modes are told from residual terms.
 pub(crate) fn resolved_from(hz: &[f64]) -> f64 {
     hz[0] + RESOLVED_LINES * (hz[hz.len() - 1] - hz[0]) / (hz.len() as f64 - 1.0).max(1.0)

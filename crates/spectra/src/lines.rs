@@ -95,11 +95,16 @@ impl SpectralLines {
         (!kept.is_empty()).then_some(SpectralLines(kept))
     }
 
+    /// The least distance of neighbouring lines, Hz; `None` of a single one.
+    pub fn least_spacing(&self) -> Option<f64> {
+        self.0.windows(2).map(|pair| pair[1] - pair[0]).min_by(f64::total_cmp)
+    }
+
     /// Whether `other` has the same lines to within a hundredth of the smallest spacing: analysers
     /// print the same step with different roundings.
     pub fn agrees_with(&self, other: &SpectralLines) -> bool {
-        let spacing = self.0.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
-        let tolerance = if spacing.is_finite() { 0.01 * spacing } else { 1e-6 * self.0[0].max(1.0) };
+        let of_one = 1e-6 * self.0[0].max(1.0);
+        let tolerance = self.least_spacing().map_or(of_one, |spacing| 0.01 * spacing);
         self.len() == other.len()
             && self.0.iter().zip(other.0.iter()).all(|(a, b)| (a - b).abs() <= tolerance)
     }

@@ -6,7 +6,7 @@ use crate::settings::ModalSettings;
 use crate::settings::drift::poles::{KNOWN_SHARE, MOST_DAMPING_FACTOR, MOST_MOVED};
 use crate::{Hypothesis, Observation};
 use jointscope_inference::each;
-use jointscope_model_error::{RecordedMode, RecordedModes, WeightedFrfs};
+use jointscope_model_error::{RecordedMode, RecordedModes};
 use jointscope_spectra::Channel;
 
 /// The recording's references, in its order.
@@ -97,7 +97,7 @@ fn cells(
         let Some(ReferenceModes { part, modes }) = struck else { continue };
         let alone = match part.pairs().len() {
             1 => vec![Some(modes.clone())],
-            _ => modes.one_by_one(WeightedFrfs { frfs: part.frfs(), weights: part.weights() }),
+            _ => modes.one_by_one(part.weighted()),
         };
         for (pair, alone) in part.pairs().iter().zip(&alone) {
             let (Some(alone), Some(response)) = (alone, responses.iter().position(|o| *o == pair.response))

@@ -8,7 +8,7 @@ use crate::settings::modal::recorded::SPARE_ORDERS;
 use crate::work::Work;
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::{Fixture, Quantity};
-use jointscope_model_error::{RecordedModes, SizePrior, Structural, WeightedFrfs};
+use jointscope_model_error::{RecordedModes, SizePrior, Structural};
 use jointscope_modes::ModesOptions;
 use std::sync::OnceLock;
 
@@ -59,7 +59,7 @@ impl Features {
 
     /// What errors of a structure's model, however large, leave of the recording.
     pub(crate) fn structural(&self, observation: &Observation) -> Option<Structural> {
-        let fitted = || self.recorded.structural(of(observation), self.held_by_dashpots);
+        let fitted = || self.recorded.structural(observation.weighted(), self.held_by_dashpots);
         *self.structural.get_or_init(fitted)
     }
 
@@ -69,15 +69,11 @@ impl Features {
     }
 }
 
-fn of(observation: &Observation) -> WeightedFrfs<'_> {
-    WeightedFrfs { frfs: observation.frfs(), weights: observation.weights() }
-}
-
 /// The recording's modes, with the help of the model's where they are not resolved.
 pub(crate) fn recorded(observation: &Observation, nominal: &Hypothesis) -> Option<RecordedModes> {
     let fixture = nominal.to_fixture().ok()?;
     let options = modes_options(observation, &fixture);
-    let recorded = RecordedModes::of(of(observation), &options, |alone| alone.expected_by(&fixture))?;
+    let recorded = RecordedModes::of(observation.weighted(), &options, |alone| alone.expected_by(&fixture))?;
     Some(recorded.beside(&fixture))
 }
 

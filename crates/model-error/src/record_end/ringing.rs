@@ -59,11 +59,6 @@ fn out_of_phase(residues: impl Iterator<Item = Complex64>) -> f64 {
     (along / square / QUADRATURE).powi(2)
 }
 
-/// The least distance of neighbouring lines, Hz; `None` of a single one.
-pub(super) fn least_spacing(hz: &[f64]) -> Option<f64> {
-    hz.windows(2).map(|pair| pair[1] - pair[0]).min_by(f64::total_cmp)
-}
-
 impl Ringing<'_> {
     fn modes(&self) -> &[Pole] {
         &self.fit.poles[..self.fit.inside]
@@ -89,7 +84,7 @@ impl Ringing<'_> {
     fn likeness(&self, times: &[f64]) -> Vec<f64> {
         let lines = self.recording.frfs.lines();
         let n = lines.len();
-        let reach = NEAR_LINES * TAU * least_spacing(lines.hz()).unwrap_or_default();
+        let reach = NEAR_LINES * TAU * lines.least_spacing().unwrap_or_default();
         let omegas: Vec<f64> = lines.omegas().collect();
         let is_near = |line: &usize| self.modes().iter().any(|p| (omegas[*line] - p.omega).abs() < reach);
         let near: Vec<usize> = (0..n).filter(is_near).collect();
