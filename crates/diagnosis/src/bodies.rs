@@ -21,6 +21,13 @@ pub(crate) fn inertia_of(fixture: &Fixture, body: usize) -> f64 {
     }
 }
 
+/// Radius of gyration of a block about its middle, m; `None` of a beam and of what does not turn.
+pub(crate) fn radius_of_gyration(fixture: &Fixture, body: usize) -> Option<f64> {
+    let BodyKind::Rigid(rigid) = &fixture.bodies()[body].kind else { return None };
+    let squared = inertia_of(fixture, body) / rigid.mass.value;
+    (squared > 0.0 && squared.is_finite()).then(|| squared.sqrt())
+}
+
 /// Whether a body has slopes.
 pub(crate) fn turns(fixture: &Fixture, body: usize) -> bool {
     fixture.bodies()[body].kind.rotates()

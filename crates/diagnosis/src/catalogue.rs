@@ -1,6 +1,6 @@
 //! Every effect at every legal place of a fixture, with starts from which a fit may set out.
 
-use crate::bodies::{extent, inertia_of, mass_of, turns};
+use crate::bodies::{extent, inertia_of, mass_of, radius_of_gyration, turns};
 use crate::candidate::{Candidate, candidate};
 use crate::departures::departed;
 use crate::settings::effects::quantities::{CHANGES_OF_SUPPORTS, DEPARTURES};
@@ -356,6 +356,10 @@ impl Surroundings<'_> {
             Starts::AlongBody(_) if self.joint.is_none() && self.dof == Some(Dof::Rotation) => vec![0.0],
             Starts::AlongBody(shares) => self.along(self.body, shares),
             Starts::AlongSecondBody(shares) => self.along(self.second, shares),
+            Starts::AcrossBody => {
+                let radius = self.body.and_then(|body| radius_of_gyration(self.fixture, body));
+                vec![radius.unwrap_or(0.0)]
+            }
             Starts::OverBand { count, low, high } => self.frequencies(count, low, high),
             Starts::OfLeading(_) => vec![0.0],
             Starts::WhereItBends(values) => match self.joint.map(|joint| &joint.law) {

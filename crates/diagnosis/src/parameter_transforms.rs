@@ -1,9 +1,9 @@
 //! How the parameters of an effect move in a fit: by themselves or by their logarithms, and between which
 //! bounds.
 
-use crate::bodies::{extent, mass_of, turns};
+use crate::bodies::{extent, mass_of, radius_of_gyration, turns};
 use crate::settings::effects::bounds::{
-    ABSCISSA_UNIT, ADDED_MASSES, BEYOND_BAR, MISSING_LENGTH, MISSING_OF_BEAM,
+    ABSCISSA_UNIT, ADDED_MASSES, BEYOND_BAR, FARTHEST_ACROSS, MISSING_LENGTH, MISSING_OF_BEAM,
 };
 use jointscope_fixture::{
     BodyKind, Effect, Fixture, Motion, NamedQuantity, ParameterSpec, Place, Possible, Quantity, QuantityKey,
@@ -86,6 +86,10 @@ pub(crate) fn parameters_of(fixture: &Fixture, effect: &Effect, wrong: Parameter
         Motion::None => fixed,
         Motion::AlongBody => along(body),
         Motion::AlongSecondBody => along(second),
+        Motion::AcrossBody => match body.and_then(|body| radius_of_gyration(fixture, body)) {
+            Some(radius) => between(radius, 0.0, FARTHEST_ACROSS * radius),
+            None => fixed,
+        },
         Motion::OfQuantity => wrong,
         Motion::Logarithm { reach } => {
             let start = quantity.value.max(f64::MIN_POSITIVE).ln();

@@ -19,7 +19,7 @@ pub(crate) fn body(export: &Export) -> Body {
     ];
     let mut text = String::from("/PREP7\n");
     for node in export.nodes.iter().filter(|node| !node.existing) {
-        text += &format!("N,{},{},0,0\n", node.number, exact(node.x));
+        text += &format!("N,{},{},{},0\n", node.number, exact(node.x), exact(node.y));
         if node.only_y {
             text += &format!("D,{},UX,0,,,,UZ,ROTX,ROTY,ROTZ\n", node.number);
         }

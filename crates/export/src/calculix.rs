@@ -30,7 +30,7 @@ pub(crate) fn body(export: &Export) -> Result<Body, ExportError> {
         notes: Vec::new(),
     };
     for node in export.nodes.iter().filter(|node| !node.existing) {
-        let y = if node.only_y { "1." } else { "0." };
+        let y = if node.only_y { "1.".to_owned() } else { twenty(node.y) };
         writer.nodes += &format!("{}, {}, {y}, 0.\n", node.number, twenty(node.x));
     }
     for joint in &export.joints {

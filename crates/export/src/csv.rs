@@ -14,6 +14,7 @@ pub(crate) fn body(export: &Export) -> Body {
     let mut table = Table(String::from("object,name,quantity,frequency,row,column,value,std,unit\n"));
     for node in &export.nodes {
         table.row(["node", &node.number.to_string(), "x", "", "", "", &exact(node.x), "", "m"]);
+        table.row(["node", &node.number.to_string(), "y", "", "", "", &exact(node.y), "", "m"]);
     }
     export.joints.iter().for_each(|joint| table.joint(joint));
     for (index, part) in export.parts.iter().enumerate() {

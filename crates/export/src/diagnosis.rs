@@ -188,7 +188,10 @@ impl Exporter<'_> {
         match (effect.kind, &effect.place) {
             (Kind::AddedMass, Place::Body(name)) => {
                 let Some(body) = self.nodes.body(name) else { return };
-                let node = self.nodes.node_at(body, value(0));
+                let node = match value(2) {
+                    0.0 => self.nodes.node_at(body, value(0)),
+                    height => self.nodes.node_above(body, (value(0), height)),
+                };
                 self.parts.push(Part { says, element: Element::Mass { node, mass: value(1) } });
             }
             (Kind::Support, Place::Body(name)) => {

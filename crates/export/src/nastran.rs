@@ -19,7 +19,7 @@ pub(crate) fn body(export: &Export, form: Option<Form>) -> Result<Body, ExportEr
     let mut notes = Vec::new();
     for node in export.nodes.iter().filter(|node| !node.existing) {
         let held = if node.only_y { "13456" } else { "" };
-        let fields = [&node.number.to_string(), "", &real(node.x), &real(0.0), &real(0.0), "", held, ""];
+        let fields = [&node.number.to_string(), "", &real(node.x), &real(node.y), &real(0.0), "", held, ""];
         text += &large("GRID", &fields);
     }
     let mut matrices = KINDS.map(|kind| (kind, Sparse::default()));

@@ -28,7 +28,7 @@ impl Numbering {
         if self.nodes.iter().any(|node| node.number == number) {
             return Err(ExportError::NodeTwice(number));
         }
-        self.nodes.push(Node { number, x, says, existing: true, only_y: false });
+        self.nodes.push(Node { number, x, y: 0.0, says, existing: true, only_y: false });
         Ok(number)
     }
 
@@ -39,23 +39,24 @@ impl Numbering {
             Some(number) => number,
             None => self.free(),
         };
-        self.define(number, x, tied(says), false)
+        self.define(number, (x, 0.0), tied(says), false)
     }
 
-    /// A node on a body that is defined in the file, numbered from the first free one.
-    pub(crate) fn on_body(&mut self, x: f64, says: &str) -> u64 {
+    /// A node on a body that is defined in the file, at a place (x, y), numbered from the first
+    /// free one.
+    pub(crate) fn on_body(&mut self, place: (f64, f64), says: &str) -> u64 {
         let number = self.free();
-        self.define(number, x, tied(says), false)
+        self.define(number, place, tied(says), false)
     }
 
     /// A node on no body, which moves along y only.
     pub(crate) fn along_y(&mut self, x: f64, says: String) -> u64 {
         let number = self.free();
-        self.define(number, x, says, true)
+        self.define(number, (x, 0.0), says, true)
     }
 
-    fn define(&mut self, number: u64, x: f64, says: String, only_y: bool) -> u64 {
-        self.nodes.push(Node { number, x, says, existing: false, only_y });
+    fn define(&mut self, number: u64, (x, y): (f64, f64), says: String, only_y: bool) -> u64 {
+        self.nodes.push(Node { number, x, y, says, existing: false, only_y });
         number
     }
 

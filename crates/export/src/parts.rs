@@ -9,8 +9,10 @@ use serde::Serialize;
 pub struct Node {
     /// Its number.
     pub number: u64,
-    /// Abscissa, m; y and z are zero.
+    /// Abscissa, m; z is zero.
     pub x: f64,
+    /// Height above the bodies' axis, m: zero but of what sits on a block's face.
+    pub y: f64,
     /// What it is.
     pub says: String,
     /// Whether the model that reads the file has it already: then it is not defined there.
@@ -122,7 +124,7 @@ impl Export {
         let nodes = || {
             self.nodes
                 .iter()
-                .find(|node| !fits(&node.x))
+                .find(|node| !fits(&node.x) || !fits(&node.y))
                 .map(|node| format!("the abscissa of node {}", node.number))
         };
         match joints.or_else(parts).or_else(nodes) {

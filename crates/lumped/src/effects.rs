@@ -92,6 +92,7 @@ pub(crate) fn actions(fixture: &Fixture) -> impl Iterator<Item = Action<'_>> {
         .effects()
         .flat_map(|effect| match effect.kind {
             Kind::Footing => footing(fixture, effect),
+            Kind::AddedMass => [action(fixture, effect), back_and_forth(fixture, effect)],
             _ => [action(fixture, effect), None],
         })
         .flatten()
@@ -105,6 +106,15 @@ fn footing<'a>(fixture: &'a Fixture, effect: &'a Effect) -> [Option<Action<'a>>;
         let joint = joint_of(fixture, &effect.place)?;
         Some(Action::OnJoint { joint, change: Change::Interface(interface) })
     })
+}
+
+/// A mass at a height above its body's axis goes back and forth along x as the body turns.
+fn back_and_forth<'a>(fixture: &'a Fixture, effect: &'a Effect) -> Option<Action<'a>> {
+    let [x, mass, height] = [0, 1, 2].map(|index| effect.value(index));
+    let turns = |body: &usize| height != 0.0 && fixture.bodies()[*body].kind.rotates();
+    let body = body_of(fixture, &effect.place).filter(turns)?;
+    let station = Station { body, x, dof: Dof::Rotation };
+    Some(Action::Through { motion: TermStation::single(station), law: PointLaw::Mass(mass * height * height) })
 }
 
 /// What an effect does; `None` where its place does not exist.

@@ -70,11 +70,12 @@ impl Measure {
     pub fn changed(&self, fixture: &Fixture) -> Option<Fixture> {
         match self {
             Measure::AddedMass { mass, mass_std, body, x, x_std } => {
-                let known = |value: f64, std: f64| Quantity::with_std(value, std);
-                let (place, parameters) =
-                    (Place::Body(body.clone()), vec![known(*x, *x_std), known(*mass, *mass_std)]);
+                let mut known =
+                    Effect::new(EffectKind::AddedMass, Place::Body(body.clone()), None, &[*x, *mass]);
+                let both = [Quantity::with_std(*x, *x_std), Quantity::with_std(*mass, *mass_std)];
+                known.parameters.splice(..2, both);
                 let mut physics = fixture.physics().to_vec();
-                physics.push(Effect { kind: EffectKind::AddedMass, place, dof: None, parameters });
+                physics.push(known);
                 fixture.clone().with_physics(physics).ok()
             }
             Measure::HungFreely => {

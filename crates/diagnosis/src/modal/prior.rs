@@ -3,7 +3,7 @@
 use crate::Hypothesis;
 use crate::candidate::Candidate;
 use crate::settings::modal::prior::{
-    LEAST_OF_LOGARITHM, OF_DASHPOT, OF_ROTARY_INERTIA, OF_SIZE, UNKNOWN_QUANTITY,
+    LEAST_OF_LOGARITHM, OF_DASHPOT, OF_HEIGHT, OF_ROTARY_INERTIA, OF_SIZE, UNKNOWN_QUANTITY,
 };
 use jointscope_fixture::{Effect, Motion, ParameterSpec, Starts};
 use jointscope_inference::{Parameter, Transform};
@@ -57,6 +57,7 @@ fn of_effect(hypothesis: &Hypothesis, index: usize, candidate: &Candidate) -> Ve
                 let (from, to) = (moves.low, moves.high);
                 Prior { mean: 0.5 * (from + to), std: (to - from) / 12f64.sqrt() }
             }
+            (_, Motion::AcrossBody) => Prior { mean: 0.0, std: OF_HEIGHT },
             // What yields in series may be far stiffer or softer than the joint, and its dashpot with it.
             (_, Motion::NonNegative(_)) if in_series && matches!(parameter.starts, Starts::OfLeading(_)) => {
                 Prior { mean: 0.0, std: OF_DASHPOT }

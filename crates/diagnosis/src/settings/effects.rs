@@ -55,6 +55,9 @@ pub(crate) mod bounds {
     /// Share of a bar's length by which a body of the bar's mass and inertia is longer at either end if half
     /// of its mass is in its middle.
     pub(crate) const BEYOND_BAR: f64 = 0.5 * (std::f64::consts::SQRT_2 - 1.0);
+    /// Height of what sits on a block above its axis, in radii of gyration, at most: the faces of a cube are
+    /// 1.2 away, and what stands on them is no higher than the block.
+    pub(crate) const FARTHEST_ACROSS: f64 = 3.0;
 }
 
 /// How common effects are.

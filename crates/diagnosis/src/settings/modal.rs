@@ -47,6 +47,8 @@ pub(crate) mod prior {
     pub(crate) const OF_DASHPOT: f64 = 30.0;
     /// The same of a rotary inertia, whose start is that of a metal section.
     pub(crate) const OF_ROTARY_INERTIA: f64 = 3.0;
+    /// Of a height above a block's axis, in radii of gyration.
+    pub(crate) const OF_HEIGHT: f64 = 1.0;
 }
 
 /// Derivatives of modes by differences.

@@ -62,7 +62,7 @@ impl<'a> FixtureNodes<'a> {
         let (x, says) = (self.x_of(point), self.point_says(point));
         // Beside nodes of the model, names of points are no numbers of its nodes.
         let node = match self.numbers_are_the_models {
-            true => self.numbering.on_body(x, &says),
+            true => self.numbering.on_body((x, 0.0), &says),
             false => self.numbering.point(&self.fixture.points()[point].name, x, &says),
         };
         self.points.insert(point, node);
@@ -75,8 +75,13 @@ impl<'a> FixtureNodes<'a> {
         if let Some(point) = self.fixture.points().iter().position(here) {
             return self.node_of(point);
         }
+        self.node_above(body, (x, 0.0))
+    }
+
+    /// A node at an abscissa of a body and a height above its axis.
+    pub(super) fn node_above(&mut self, body: usize, (x, height): (f64, f64)) -> u64 {
         let says = format!("on body {}", self.fixture.bodies()[body].name);
-        self.numbering.on_body(x + self.shifts[body], &says)
+        self.numbering.on_body((x + self.shifts[body], height), &says)
     }
 
     pub(super) fn body(&self, name: &str) -> Option<usize> {

@@ -136,6 +136,22 @@ fn masses_supports_resonators_and_springs_past_the_joint_become_parts_with_their
 }
 
 #[test]
+fn a_mass_on_a_face_sits_at_a_node_of_its_own_above_the_axis() {
+    // Its abscissa is that of point 3, which lies on the axis.
+    let physics = r#"{"kind": "added_mass", "place": "B", "x": 0.06, "mass": 0.05, "height": 0.025}"#;
+    let export =
+        of_diagnosis(&diagnosis(json!([])), &fixture(physics, ""), &ExportOptions::default()).unwrap();
+    let Element::Mass { node, mass } = export.parts[0].element else { panic!("{:?}", export.parts) };
+    let node = export.nodes.iter().find(|other| other.number == node).unwrap();
+    assert_eq!((node.x, node.y, mass, node.existing), (0.06, 0.025, 0.05, false));
+    let written = |program| write(&export, program, None, &[]).unwrap();
+    for program in [Program::Nastran, Program::Ansys, Program::Abaqus, Program::Calculix, Program::Csv] {
+        let text = written(program);
+        assert!(text.contains("2.5E-2") || text.contains("0.025") || text.contains("2.5-2"), "{text}");
+    }
+}
+
+#[test]
 fn what_has_no_counterpart_is_listed_with_the_reason() {
     let physics = r#"{"kind": "channel_gain", "place": "response 3", "factor": 0.9}, {"kind": "exponential_window", "place": "all", "decay": 3},
         {"kind": "gap", "place": "J", "dof": "rotation", "clearance": 1e-5, "stiffness": 100}"#;

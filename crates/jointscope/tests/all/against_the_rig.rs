@@ -56,6 +56,28 @@ fn every_linear_effect_at_random_places_of_random_fixtures_means_the_same_to_bot
 }
 
 #[test]
+fn a_mass_on_the_face_of_a_block_means_the_same_to_both() {
+    let fixture = |height: f64| {
+        let text = format!(
+            r#"{{ "bodies": {{ "A": {{ "mass": 1.1, "inertia": 9.5e-4, "x_cg": -0.03 }}, "B": {{ "mass": 1.2, "inertia": 9.9e-4, "x_cg": 0.095 }} }},
+                 "points": {{ "1": {{ "body": "A", "x": -0.06 }}, "2": {{ "body": "A", "x": 0 }}, "3": {{ "body": "B", "x": 0.065 }}, "4": {{ "body": "B", "x": 0.125 }} }},
+                 "joints": {{ "J": {{ "from": "2", "to": "3", "beam": {{ "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 }} }} }},
+                 "damping": {{ "modal_ratios": [0.005] }},
+                 "physics": [{{ "kind": "added_mass", "place": "B", "x": 0.12, "mass": 0.05, "height": {height} }}] }}"#
+        );
+        Fixture::from_json(&text).unwrap()
+    };
+    let lines = SpectralLines::even(5.0, 5.0, 400).unwrap();
+    let pairs = [("4", "1"), ("1", "1"), ("4", "4")].map(|(o, i)| jointscope::FrfPair::transverse(o, i));
+    let lumped = |height: f64| synthesize(&fixture(height), &pairs, &lines, Instrument::Perfect).unwrap();
+    let rig = frfs(&fixture(0.03), &pairs, &lines, jointscope_rig::Instrument::Perfect).unwrap();
+    for index in 0..pairs.len() {
+        assert!(relative_error(&lumped(0.03), &rig, index) < 2e-7, "{}", pairs[index]);
+        assert!(relative_error(&lumped(0.0), &rig, index) > 1e-3, "a height that does nothing");
+    }
+}
+
+#[test]
 fn a_layer_along_a_foot_means_the_same_to_both() {
     let strip = |physics: &str| {
         let text = format!(

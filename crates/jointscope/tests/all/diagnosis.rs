@@ -1,7 +1,7 @@
 //! The diagnosis on recordings of the simulated laboratory, whose hidden physics it is not told.
 
 use crate::common::recorded;
-use jointscope::Fixture;
+use jointscope::{Fixture, Says};
 use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
 use jointscope::fixture::{Dof, Effect, EffectKind, Place};
 
@@ -41,6 +41,21 @@ fn a_forgotten_mass_is_found_with_its_place_size_and_a_prediction_of_what_was_he
     let held_out = diagnosis.held_out.as_ref().unwrap();
     // What is left is the noise of the held-out values.
     assert!(held_out.nrmse_repaired < 0.5 * held_out.nrmse_refitted, "{held_out:?}");
+}
+
+#[test]
+fn a_mass_on_the_face_of_a_block_is_told_with_its_height_above_the_axis() {
+    let lump = |height| Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.11, 0.06, height]);
+    let diagnosis = diagnose(vec![lump(0.03)], 12);
+    let [finding] = &diagnosis.findings[..] else { panic!("{:?}", diagnosis.findings) };
+    assert!(finding.effect.is_named_as(&lump(0.03)) && finding.probability > 0.9, "{}", finding.says());
+    for (estimate, truth) in finding.estimates.iter().zip([0.11, 0.06, 0.03]) {
+        let [low, high] = estimate.interval.unwrap();
+        assert!((low..high).contains(&truth) && low > 0.0, "{low} to {high}: {truth}");
+    }
+    assert!(finding.says().contains("off the body's axis"), "{}", finding.says());
+    let diagnosis = diagnose(vec![lump(0.0)], 12);
+    assert!(!diagnosis.says().contains("off the body's axis"), "{}", diagnosis.says());
 }
 
 #[test]

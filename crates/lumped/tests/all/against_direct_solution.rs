@@ -301,6 +301,22 @@ fn ends(assembly: &Assembly) -> [Vec<f64>; 4] {
 }
 
 #[test]
+fn a_mass_on_the_face_of_a_block_goes_back_and_forth_as_the_block_turns() {
+    let (x, mass, height) = (0.11, 0.06, 0.025);
+    let effect =
+        format!(r#"{{"kind": "added_mass", "place": "B", "x": {x}, "mass": {mass}, "height": {height}}}"#);
+    check_effect(&effect, |mut z, assembly, hz| {
+        let [up, turned] = Station::both(1, x).map(|station| assembly.station_row(&station));
+        // Of a point at (x, height) on a body that turns by θ: y + … along y, −height·θ along x.
+        let along: Vec<f64> = turned.iter().map(|theta| -height * theta).collect();
+        for motion in [up, along] {
+            add(&mut z, &motion, Complex::new(-(TAU * hz).powi(2) * mass, 0.0));
+        }
+        z
+    });
+}
+
+#[test]
 fn a_spring_beside_a_joint_acts_on_the_relative_motion_of_its_ends() {
     for (dof, stiffness, damping) in [("translation", 3e5, 40.0), ("rotation", 900.0, 0.2)] {
         let effect = format!(

@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 const LINEAR: &str = r#"
-    {"kind": "added_mass", "place": "B", "x": 0.11, "mass": 0.05},
+    {"kind": "added_mass", "place": "B", "x": 0.11, "mass": 0.05, "height": 0.02},
     {"kind": "support", "place": "A", "x": -0.03, "stiffness": 3e3, "damping": 2.0},
     {"kind": "attached_resonator", "place": "B", "x": 0.1, "mass": 0.02, "frequency": 300, "damping_ratio": 0.02},
     {"kind": "body_flexibility", "place": "A", "frequency": 1500, "damping_ratio": 0.01},

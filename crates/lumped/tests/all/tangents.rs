@@ -34,9 +34,10 @@ fn fixture(made: Made, by: &[f64; NUMBERS]) -> Fixture {
     let effects = [
         String::new(),
         format!(
-            r#"{{ "kind": "added_mass", "place": "B", "x": {}, "mass": {} }}"#,
+            r#"{{ "kind": "added_mass", "place": "B", "x": {}, "mass": {}, "height": {} }}"#,
             0.15 * by[18],
-            0.1 * by[19]
+            0.1 * by[19],
+            0.03 * by[20]
         ),
         format!(
             r#"{{ "kind": "attached_resonator", "place": "A", "x": {}, "mass": {}, "frequency": {}, "damping_ratio": {} }}"#,

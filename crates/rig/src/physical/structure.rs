@@ -185,7 +185,12 @@ fn attach(
         Ok::<Row, StructureError>(if effect.dof == Some(Dof::Rotation) { station.theta } else { station.y })
     };
     match effect.kind {
-        EffectKind::AddedMass => assembly.inertia(&place()?, effect.value(1)),
+        EffectKind::AddedMass => {
+            let (station, mass, height) =
+                (bodies.station(body, effect.value(0))?, effect.value(1), effect.value(2));
+            assembly.inertia(&station.y, mass);
+            assembly.inertia(&station.theta, mass * height * height);
+        }
         EffectKind::Support => {
             let place = place()?;
             assembly.spring(&place, effect.value(1), Law::ELASTIC);
