@@ -89,6 +89,11 @@ impl ModelledTest {
         self.model.is_first_order()
     }
 
+    /// Decay of the exponential window over force and responses, 1/s; zero without one.
+    pub fn window_decay(&self) -> f64 {
+        self.chain.decay()
+    }
+
     /// What gains and delays of its channels, but no filters, make of each FRF at a frequency, rad/s.
     pub fn gains_and_delays(&self, omega: f64) -> Vec<Complex64> {
         let of = |reading: &Reading| reading.gain * Complex64::cis(-omega * reading.delay);

@@ -6,6 +6,7 @@
 //! the shape's phases are turned too: what of the residues is in quadrature for that reason errs by the same
 //! share.
 
+use crate::basis::Pole;
 use crate::matching::Pairing;
 use crate::modelled::ModelledModes;
 use crate::recorded::{Offsets, RecordedModes};
@@ -145,6 +146,9 @@ pub struct SharedFeatures {
     pub(crate) noise: Arc<[f64]>,
     /// What of the paired modes' residues is in quadrature because of the structure's damping, FRF by FRF.
     turned: Vec<f64>,
+    /// By paired mode, the share of its recorded damping that is the structure's: the rest is that of an
+    /// exponential window, which nothing is wrong with.
+    own_damping: Vec<f64>,
     /// What of the features in quadrature would be otherwise if the structure's damping were distributed
     /// otherwise: all of it or nothing, as one unknown of size one. Empty where that is not in question.
     distributed: Vec<(usize, f64)>,
@@ -259,6 +263,8 @@ impl SharedFeatures {
         let mut kinds = vec![Entries::new(); KINDS];
         let matched = pairing.pairs.len();
         let mut turned = Vec::with_capacity(matched * frfs);
+        let own = |&(r, _): &(usize, usize)| own_share(&recorded.modes[r].pole, modelled.window_decay);
+        let own_damping: Vec<f64> = pairing.pairs.iter().map(own).collect();
         let mut both = [Entries::new(), Entries::new()];
         for k in 0..matched {
             put(&mut kinds[FREQUENCY], n, (2 * k, 2 * k), 1.0);
@@ -287,13 +293,14 @@ impl SharedFeatures {
         let first = 2 * matched + 2 * matched * frfs;
         add_residual_terms(&mut kinds, recorded, modelled, (n, first));
         add_gains(&mut kinds[GAIN], recorded, (pairing, modelled), (n, first));
-        kinds[DAMPING] = of_damping(n, frfs, &turned);
+        kinds[DAMPING] = of_damping(n, frfs, &turned, &own_damping);
         SharedFeatures {
             places,
             noise,
             turned,
             distributed: Vec::new(),
-            structural: of_structural_damping(recorded, (pairing, modelled)),
+            structural: of_structural_damping(recorded, (pairing, modelled), &own_damping),
+            own_damping,
             first_residue: 2 * matched,
             kinds,
             both,
@@ -318,7 +325,7 @@ impl SharedFeatures {
                 self.turned[k * frfs + frf] -= part;
             }
         }
-        self.kinds[DAMPING] = of_damping(self.count(), frfs, &self.turned);
+        self.kinds[DAMPING] = of_damping(self.count(), frfs, &self.turned, &self.own_damping);
         self
     }
 
@@ -433,25 +440,32 @@ impl SharedFeatures {
 fn of_structural_damping(
     recorded: &RecordedModes,
     (pairing, modelled): (&Pairing, &ModelledModes),
+    own_damping: &[f64],
 ) -> Vec<(usize, f64)> {
-    let residues = pairing.pairs.iter().flat_map(|&(r, m)| {
-        let by = recorded.modes[r].pole.damping_ratio / recorded.modes[r].scale;
+    let residues = pairing.pairs.iter().zip(own_damping).flat_map(|(&(r, m), own)| {
+        let by = own * recorded.modes[r].pole.damping_ratio / recorded.modes[r].scale;
         modelled.modes[m].residues.iter().map(move |residue| by * residue.re)
     });
     let first = 2 * pairing.pairs.len() + 1;
     residues.enumerate().map(|(k, turned)| (first + 2 * k, turned)).collect()
 }
 
+/// The share of a recorded mode's damping that is the structure's and not that of a window of this decay, 1/s.
+fn own_share(pole: &Pole, window_decay: f64) -> f64 {
+    let decay = pole.damping_ratio * pole.omega;
+    if decay > 0.0 { (1.0 - window_decay / decay).max(0.0) } else { 1.0 }
+}
+
 /// What errors of the modes' damping make of `n` features, for a size of one, entries that are not zero by
 /// their place: the damping that turns a shape's phases, which puts so much of each residue in quadrature, is
-/// as wrong as that which makes the mode die away.
-fn of_damping(n: usize, frfs: usize, turned: &[f64]) -> Entries {
-    let matched = turned.len().checked_div(frfs).unwrap_or(0);
+/// as wrong as that which makes the mode die away, of which `own` is the structure's share.
+fn of_damping(n: usize, frfs: usize, turned: &[f64], own: &[f64]) -> Entries {
+    let matched = own.len();
     let mut all = Entries::new();
-    for (k, turned) in turned.chunks_exact(frfs.max(1)).enumerate() {
+    for (k, (turned, own)) in turned.chunks_exact(frfs.max(1)).zip(own).enumerate() {
         let first = 2 * matched + 2 * k * frfs;
         let parts = turned.iter().enumerate().map(|(frf, part)| (first + 2 * frf + 1, *part));
-        let of_mode: Vec<(usize, f64)> = std::iter::once((2 * k + 1, 1.0)).chain(parts).collect();
+        let of_mode: Vec<(usize, f64)> = std::iter::once((2 * k + 1, *own)).chain(parts).collect();
         for &(i, a) in &of_mode {
             of_mode.iter().for_each(|&(j, b)| put(&mut all, n, (i, j), a * b));
         }

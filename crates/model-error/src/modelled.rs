@@ -48,6 +48,8 @@ pub struct ModelledModes {
     /// highest line.
     pub(crate) signals: Vec<Vec<Complex64>>,
     pub(crate) signals_at_ends: [Vec<Complex64>; 2],
+    /// Decay of the exponential window that all of this is read under, 1/s.
+    pub(crate) window_decay: f64,
     /// By how much the last residual term lowers χ² of what the modes leave, over all FRFs and lines of the
     /// recording.
     last_term: f64,
@@ -140,7 +142,17 @@ impl ModelledModes {
         last_term *= outline.recorded as f64 / lines.len() as f64;
         let signals = modes.iter().map(|mode| test.gains_and_delays(mode.pole.omega)).collect();
         let signals_at_ends = [recorded.band.0, recorded.band.1].map(|hz| test.gains_and_delays(TAU * hz));
-        Some(ModelledModes { modes, parts, residual_terms, leaks, signals, signals_at_ends, last_term })
+        let window_decay = test.window_decay();
+        Some(ModelledModes {
+            modes,
+            parts,
+            residual_terms,
+            leaks,
+            signals,
+            signals_at_ends,
+            window_decay,
+            last_term,
+        })
     }
 
     /// Whether a free fit of the model's own FRFs would take the last of the recording's residual terms, by

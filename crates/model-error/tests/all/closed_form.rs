@@ -235,23 +235,32 @@ fn an_error_of_the_damping_is_one_of_ratios_and_of_what_is_in_quadrature() {
 }
 
 #[test]
-fn structural_damping_turns_the_residues_of_a_viscous_mode_by_its_damping_ratio() {
-    let viscous = two_masses(0.01, "");
-    let structural = viscous.clone().with_damping(Damping::LossFactor(Quantity::bare(0.02))).unwrap();
-    let pairs = pairs(&[("1", "1"), ("2", "1"), ("2", "2")]);
-    let recorded = Recorded::of(&structural, &pairs, &lines(600.0), noise(None)).modes();
-    let compared = Compared::of(&viscous, recorded);
-    let (law, noise) = (compared.covariance(&no_error()), compared.noise());
-    let (n, difference, model) = (compared.comparison.count(), compared.difference(), compared.model());
-    for a in 0..3 {
-        let (real, imaginary) = (2 + 2 * a, 3 + 2 * a);
-        let turned = difference[imaginary] / model[real];
-        assert!((turned / -0.01 - 1.0).abs() < 0.03, "FRF {a}: {turned}");
-        for b in 0..3 {
-            let entry = law[imaginary * n + 3 + 2 * b] - noise[imaginary * n + 3 + 2 * b];
-            let expected = 1e-4 * model[real] * model[2 + 2 * b];
-            assert!((entry / expected - 1.0).abs() < 0.01, "FRFs {a} and {b}: {entry}, expected {expected}");
+fn structural_damping_turns_the_residues_of_a_viscous_mode_by_its_own_damping_ratio() {
+    // What a window adds, three times what the mode has by itself, turns nothing and is not in error.
+    for window in [0.0, 0.03 * natural()] {
+        let effect = format!(r#"{{"kind": "exponential_window", "place": "all", "decay": {window}}}"#);
+        let viscous = two_masses(0.01, &effect);
+        let structural = viscous.clone().with_damping(Damping::LossFactor(Quantity::bare(0.02))).unwrap();
+        let pairs = pairs(&[("1", "1"), ("2", "1"), ("2", "2")]);
+        let recorded = Recorded::of(&structural, &pairs, &lines(600.0), noise(None)).modes();
+        let compared = Compared::of(&viscous, recorded);
+        let (law, noise) = (compared.covariance(&no_error()), compared.noise());
+        let (n, difference, model) = (compared.comparison.count(), compared.difference(), compared.model());
+        for a in 0..3 {
+            let (real, imaginary) = (2 + 2 * a, 3 + 2 * a);
+            let turned = difference[imaginary] / model[real];
+            assert!((turned / -0.01 - 1.0).abs() < 0.03, "FRF {a}, window {window}: {turned}");
+            for b in 0..3 {
+                let entry = law[imaginary * n + 3 + 2 * b] - noise[imaginary * n + 3 + 2 * b];
+                let expected = 1e-4 * model[real] * model[2 + 2 * b];
+                let off = entry / expected - 1.0;
+                assert!(off.abs() < 0.03, "FRFs {a} and {b}, window {window}: {entry}, expected {expected}");
+            }
         }
+        let sizes = ErrorSizes { damping: 1.0, ..no_error() };
+        let of_ratio = compared.covariance(&sizes)[n + 1] - law[n + 1];
+        let own = 0.01 / (0.01 + window / natural());
+        assert!((of_ratio / (own * own) - 1.0).abs() < 0.03, "window {window}: {of_ratio}, expected {own}²");
     }
 }
 
