@@ -191,8 +191,9 @@ fn routed(given: Given, without_effects: &Search, modal: Option<&ModalJudgement>
         return parts;
     }
     if !modal.names_all() {
-        return match is_bent_in_vain(fitter, &parts.search.repaired) {
-            true => by_modes(given, without_effects, &modal.where_incomplete(fitter)),
+        let modal = modal.where_incomplete(fitter);
+        return match modal.explains() || is_bent_in_vain(fitter, &parts.search.repaired) {
+            true => by_modes(given, without_effects, &modal),
             false => parts,
         };
     }
