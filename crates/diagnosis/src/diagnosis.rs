@@ -10,7 +10,6 @@ use crate::location::Location;
 use crate::mismatch::{FrfMismatch, mismatch};
 use crate::modal::{Features, ModelError};
 use crate::options::{DiagnosisError, DiagnosisOptions};
-use crate::record_end::without_early_end;
 use crate::routes::{self, Parts, chance};
 use crate::search::Search;
 use crate::settings::Settings;
@@ -103,7 +102,6 @@ impl Diagnosis {
         let fixture = &with_gains_of_records(fixture, frfs, options);
         let nominal = Hypothesis::nominal(fixture, options.exact);
         let (usable, observation) = Usable::of(frfs, options, &nominal, work)?;
-        let (observation, early_end) = without_early_end(observation, fixture);
         let diagnosed = |observation| Self::by_its_route(fixture, &usable, observation, watch);
         let diagnosis = diagnosed(observation)?;
         let diagnosis = match options.baseline {
@@ -114,7 +112,8 @@ impl Diagnosis {
         };
         let diagnosis = diagnosis.within_estimates(options);
         let drift = usable.drifted.as_ref().and_then(|drifted| diagnosis.told_drift(drifted));
-        Ok(Diagnosis { contradictory: usable.contradictory, early_end, drift, ..diagnosis })
+        let Usable { contradictory, early_end, .. } = usable;
+        Ok(Diagnosis { contradictory, early_end, drift, ..diagnosis })
     }
 
     /// What the route of a recording makes of an observation, where FRFs are many of a part of them first.
@@ -130,7 +129,8 @@ impl Diagnosis {
         let fitter = Fitter { observation: searched, settings: &options.settings, watch };
         let mut parts = match &options.baseline {
             Some(baseline) => {
-                let (baseline, _) = without_early_end(usable.part_of_baseline(baseline)?, fixture);
+                let nominal = Hypothesis::nominal(fixture, options.exact);
+                let baseline = usable.part_of_baseline(baseline, &nominal)?;
                 changed_since(&fitter, &observation, baseline, (fixture, options.exact))?
             }
             None => routes::judged(&fitter, fixture, options)?,

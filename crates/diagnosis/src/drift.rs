@@ -11,8 +11,11 @@
 //!    modes that several references show are compared.
 //! 2. **FRF by FRF** ([`poles_by_frf`]). Where they differ, each FRF's own poles are taken; what differs by
 //!    response is no drift ([`table`]).
-//! 3. **Agreeing references** ([`agreement`]). The most references whose poles agree; the diagnosis goes on
-//!    with theirs.
+//! 3. **Little drift** ([`levelled`]). Where natural frequencies differ by no more than some kelvins make them,
+//!    each mode of each reference is put where it lies on the mean of all, and the diagnosis goes on with all
+//!    FRFs.
+//!    **Agreeing references** ([`agreement`]). Else the most references whose poles agree; it goes on with
+//!    theirs.
 //! 4. **What drifted** ([`attribution`]). Each stiffness moves each mode by its share of the strain energy, d
 //!    ln ω/d ln k = s/2. The shares of the model that the diagnosis ends with tell which stiffness explains
 //!    the differences, and by how much.
@@ -20,8 +23,10 @@
 mod agreement;
 mod attribution;
 mod drifted;
+mod levelled;
 mod poles_by_frf;
 mod table;
 
 pub use attribution::{ModeDrift, ReferenceChange, TestDrift};
 pub(crate) use drifted::Drifted;
+pub(crate) use poles_by_frf::references;

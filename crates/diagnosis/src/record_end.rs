@@ -1,6 +1,7 @@
 //! FRFs of records that ended while the structure still rang.
 
 use crate::Observation;
+use crate::drift::references;
 use crate::modal::modes_options;
 use crate::recorded_lines::is_short;
 use jointscope_fixture::Fixture;
@@ -39,4 +40,24 @@ pub(crate) fn without_early_end(
         Some((restored, end)) => (restored, Some(end)),
         None => (observation, None),
     }
+}
+
+/// The observation as if records had not ended before the structure was silent, of each reference by its own
+/// poles, where the structure drifted from one to the next: what still rang of a mode is out of phase by all
+/// that its frequency is off. `None` where one of them tells of no such end by itself.
+pub(crate) fn without_ends_of_references(
+    observation: &Observation,
+    fixture: &Fixture,
+) -> Option<Observation> {
+    let n = observation.lines().len();
+    let mut missing = vec![Complex64::ZERO; observation.values().len()];
+    for reference in references(observation) {
+        let part = observation.reduced(|_| true, |pair| pair.reference == reference)?;
+        let (_, own) = RecordEnd::of(part.weighted(), &modes_options(&part, fixture))?;
+        let frfs = observation.pairs().iter().enumerate().filter(|(_, pair)| pair.reference == reference);
+        for ((frf, _), own) in frfs.zip(own.chunks_exact(n)) {
+            missing[frf * n..][..n].copy_from_slice(own);
+        }
+    }
+    observation.plus(&missing)
 }

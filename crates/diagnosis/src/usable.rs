@@ -3,8 +3,10 @@
 
 use crate::contradiction::contradictory;
 use crate::drift::Drifted;
+use crate::record_end::{without_early_end, without_ends_of_references};
 use crate::work::Work;
 use crate::{DiagnosisError, DiagnosisOptions, Hypothesis, Observation};
+use jointscope_model_error::RecordEnd;
 use jointscope_spectra::{FrfPair, FrfSet};
 use std::sync::Arc;
 
@@ -13,6 +15,8 @@ pub(crate) struct Usable<'a> {
     pub options: &'a DiagnosisOptions,
     /// Bands, Hz, of lines that contradict all others.
     pub contradictory: Vec<(f64, f64)>,
+    /// The end of the records, where it came too early.
+    pub early_end: Option<RecordEnd>,
     /// How references differ, where they do.
     pub drifted: Option<Drifted>,
 }
@@ -29,13 +33,8 @@ impl<'a> Usable<'a> {
         work: Arc<Work>,
     ) -> Result<(Self, Observation), DiagnosisError> {
         let (observation, contradictory) = without_contradictory(frfs, options, nominal, work)?;
-        let drifted = Drifted::of(&observation, nominal, &options.settings.modal);
-        let usable = Usable { options, contradictory, drifted };
-        let observation = match usable.drifted {
-            Some(_) => usable.agreeing(observation),
-            None => observation,
-        };
-        Ok((usable, observation))
+        let (observation, early_end, drifted) = of_one_structure(observation, nominal, options);
+        Ok((Usable { options, contradictory, early_end, drifted }, observation))
     }
 
     /// The FRFs to be held out that are of references which agree.
@@ -47,9 +46,14 @@ impl<'a> Usable<'a> {
     ///
     /// # Errors
     /// FRFs that cannot be used.
-    pub(crate) fn part_of_baseline(&self, baseline: &FrfSet) -> Result<Observation, DiagnosisError> {
+    pub(crate) fn part_of_baseline(
+        &self,
+        baseline: &FrfSet,
+        nominal: &Hypothesis,
+    ) -> Result<Observation, DiagnosisError> {
         let in_use = |hz| is_asked_for(self.options, hz) && !is_within(&self.contradictory, hz);
-        Ok(self.agreeing(Observation::new(baseline, in_use)?))
+        let observation = self.agreeing(Observation::new(baseline, in_use)?);
+        Ok(of_one_structure(observation, nominal, self.options).0)
     }
 
     /// Whether an FRF is of a reference that agrees with the others.
@@ -61,6 +65,28 @@ impl<'a> Usable<'a> {
     fn agreeing(&self, observation: Observation) -> Observation {
         observation.reduced(|_| true, |pair| self.keeps(pair)).unwrap_or(observation)
     }
+}
+
+/// The observation as if records had not ended too early and references were those of one structure; where
+/// records ended, and how references differ.
+fn of_one_structure(
+    observation: Observation,
+    nominal: &Hypothesis,
+    options: &DiagnosisOptions,
+) -> (Observation, Option<RecordEnd>, Option<Drifted>) {
+    let drifted = |of: &Observation| Drifted::of(of, nominal, &options.settings.modal);
+    let (restored, early_end) = without_early_end(observation.clone(), nominal.fixture());
+    let Some((drift, mut without)) = drifted(&restored) else { return (restored, early_end, None) };
+    let mut drift = Some(drift);
+    if early_end.is_some()
+        && let Some(each) = without_ends_of_references(&observation, nominal.fixture())
+    {
+        (drift, without) = match drifted(&each) {
+            Some((drift, without)) => (Some(drift), without),
+            None => (None, each),
+        };
+    }
+    (without, early_end, drift)
 }
 
 /// The observation of the lines that are asked for and do not contradict all others; and the bands, Hz, of

@@ -18,7 +18,9 @@ pub(crate) fn body(export: &Export, form: Form) -> Body {
     let own: Vec<_> = export.nodes.iter().filter(|node| !node.existing).collect();
     if !own.is_empty() {
         text += "*NODE\n";
-        own.iter().for_each(|node| text += &format!("{}, {}, {}, 0.\n", node.number, twenty(node.x), twenty(node.y)));
+        own.iter().for_each(|node| {
+            text += &format!("{}, {}, {}, 0.\n", node.number, twenty(node.x), twenty(node.y))
+        });
     }
     let mut id = export.first_id;
     if form == Form::Matrix {

@@ -23,7 +23,8 @@ pub(crate) fn comment(mark: &str, export: &Export, made: &[String], notes: &[Str
     lines.push("a joint acts on y and theta alone: what it does along x and z, and about x and y, was not measured and is not written".to_owned());
     lines.extend(export.nodes.iter().map(|node| {
         let where_from = if node.existing { "of your model, must lie" } else { "defined here" };
-        let y = if node.y == 0.0 { "y = z = 0".to_owned() } else { format!("y = {} m, z = 0", short(node.y)) };
+        let y =
+            if node.y == 0.0 { "y = z = 0".to_owned() } else { format!("y = {} m, z = 0", short(node.y)) };
         format!("node {}: {}, {where_from} at x = {} m, {y}", node.number, node.says, short(node.x))
     }));
     export.joints.iter().for_each(|joint| lines.extend(of_joint(joint)));

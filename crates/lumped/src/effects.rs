@@ -114,7 +114,10 @@ fn back_and_forth<'a>(fixture: &'a Fixture, effect: &'a Effect) -> Option<Action
     let turns = |body: &usize| height != 0.0 && fixture.bodies()[*body].kind.rotates();
     let body = body_of(fixture, &effect.place).filter(turns)?;
     let station = Station { body, x, dof: Dof::Rotation };
-    Some(Action::Through { motion: TermStation::single(station), law: PointLaw::Mass(mass * height * height) })
+    Some(Action::Through {
+        motion: TermStation::single(station),
+        law: PointLaw::Mass(mass * height * height),
+    })
 }
 
 /// What an effect does; `None` where its place does not exist.

@@ -25,7 +25,7 @@ impl Pole {
     }
 
     /// s²/(s² + 2ζωs + ω²) at s = iω: the accelerance of a mode of modal mass one.
-    pub(crate) fn accelerance(&self, s: Complex64) -> Complex64 {
+    pub fn accelerance(&self, s: Complex64) -> Complex64 {
         s * s / self.denominator(s)
     }
 

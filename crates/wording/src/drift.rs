@@ -9,8 +9,8 @@ const NAMES: usize = 4;
 
 impl Says for TestDrift {
     fn says(&self) -> String {
-        let [kept, others]: [Vec<&ReferenceChange>; 2] =
-            [true, false].map(|kept| self.references.iter().filter(|own| own.kept == kept).collect());
+        let [alike, others]: [Vec<&ReferenceChange>; 2] =
+            [true, false].map(|agrees| self.references.iter().filter(|own| own.agrees == agrees).collect());
         let named = |references: &[&ReferenceChange]| {
             let names: Vec<String> = references.iter().map(|own| own.reference.to_string()).collect();
             format!("reference{} {}", if names.len() == 1 { "" } else { "s" }, listed(&names))
@@ -28,16 +28,22 @@ impl Says for TestDrift {
             (None, _) => ". Which stiffness it was the modes cannot tell".to_owned(),
             (Some(_), _) => String::new(),
         };
-        format!(
-            "The test drifted: {subject}{} than while {} {} struck (poles differ as much by chance with a probability {}){unknown}. Measure again, \
-             or give each reference's FRFs alone; a joint that depends on amplitude and was struck with other strength would look the same. What follows is of \
-             the FRFs of {} alone.",
+        let (alike, were) = (named(&alike), if alike.len() == 1 { "was" } else { "were" });
+        let drifted = format!(
+            "The test drifted: {subject}{} than while {alike} {were} struck (poles differ as much by chance with a probability {}){unknown}. ",
             listed(&course),
-            named(&kept),
-            if kept.len() == 1 { "was" } else { "were" },
             by_chance(self.p_value),
-            named(&kept),
-        )
+        );
+        match self.taken_out {
+            true => {
+                drifted
+                    + "That is as little as some kelvins make; what follows is of FRFs with the difference taken out."
+            }
+            false => format!(
+                "{drifted}Measure again, or give each reference's FRFs alone; a joint that depends on amplitude and was struck with other strength would \
+                 look the same. What follows is of the FRFs of {alike} alone."
+            ),
+        }
     }
 }
 

@@ -21,6 +21,8 @@ use std::f64::consts::TAU;
 pub struct ReferenceChange {
     /// Where was struck.
     pub reference: Channel,
+    /// Whether its poles agree with those that most references share.
+    pub agrees: bool,
     /// Relative change of the stiffness that drifted while this reference was struck: zero by definition
     /// where the references agree.
     pub change: f64,
@@ -57,6 +59,8 @@ pub struct TestDrift {
     pub references: Vec<ReferenceChange>,
     /// Probability of poles that differ as much between references by chance.
     pub p_value: f64,
+    /// Whether it is so little that the diagnosis goes on with all FRFs, the difference taken out of them.
+    pub taken_out: bool,
     /// The modes that tell it.
     pub modes: Vec<ModeDrift>,
 }
@@ -83,8 +87,8 @@ impl TestDrift {
         let observation = Observation::new(frfs, |_| true).ok()?;
         let references = references(&observation);
         let nominal = Hypothesis::nominal(fixture, false);
-        let settings = Settings::default().modal;
-        poles_by_frf(&observation, &nominal, &settings, (&references, 1.0 + CALLED_DRIFT))?.table.chance()
+        let most_left = Settings::default().modal.free_fit_limit;
+        poles_by_frf(&observation, &nominal, most_left, (&references, 1.0 + CALLED_DRIFT))?.table.chance()
     }
 }
 
@@ -130,7 +134,8 @@ fn attributed(drifted: &Drifted, model: &Fixture, explains: bool) -> TestDrift {
             change: ln.exp_m1(),
             std: ln.exp() * deviation,
             ci95: interval95(ln, deviation).map(f64::exp_m1),
-            kept: kept[index],
+            agrees: kept[index],
+            kept: kept[index] || drifted.levelled,
         }
     };
     // Where one is found there is nothing else to consider.
@@ -140,6 +145,7 @@ fn attributed(drifted: &Drifted, model: &Fixture, explains: bool) -> TestDrift {
         could_be: considered.map(|(candidate, _)| candidate.name.clone()).collect(),
         references: drifted.references.iter().enumerate().map(reference).collect(),
         p_value: drifted.p_value,
+        taken_out: drifted.levelled,
         modes: modes(drifted, inflation),
     }
 }

@@ -1,10 +1,11 @@
 //! Whether the references' poles differ, and which of the references agree.
 
 use super::agreement::agreeing;
+use super::levelled::levelled;
 use super::poles_by_frf::{PolesByFrf, poles_by_frf, references};
 use super::table::Table;
 use crate::settings::ModalSettings;
-use crate::settings::drift::differences::{CALLED_DRIFT, LEAST_DIFFERENCE};
+use crate::settings::drift::differences::{CALLED_DRIFT, LEAST_DIFFERENCE, NEARLY_ALL};
 use crate::{Hypothesis, Observation};
 use jointscope_model_error::RecordedModes;
 use jointscope_spectra::Channel;
@@ -18,22 +19,32 @@ pub(crate) struct Drifted {
     pub(super) modes: RecordedModes,
     pub(super) table: Table,
     pub(super) p_value: f64,
+    /// Whether references differ so little that the difference is taken out, and none of them left out.
+    pub(super) levelled: bool,
 }
 
 impl Drifted {
-    /// Drift between the references of a recording; `None` where their poles agree, or there is nothing to
-    /// compare.
+    /// Drift between the references of a recording, and the observation without it: of the references that
+    /// agree, or of all of them where they differ little. `None` where their poles agree, or there is nothing
+    /// to compare.
     pub(crate) fn of(
         observation: &Observation,
         nominal: &Hypothesis,
         settings: &ModalSettings,
-    ) -> Option<Self> {
+    ) -> Option<(Self, Observation)> {
+        // Where modes do not tell all there is, little drift may be taken out, but no reference left out.
+        let least_drift = || Self::told(observation, nominal, NEARLY_ALL).filter(|(own, _)| own.levelled);
+        Self::told(observation, nominal, settings.free_fit_limit).or_else(least_drift)
+    }
+
+    /// The same of references whose free fits leave no more than `most_left` in χ² per degree of freedom.
+    fn told(observation: &Observation, nominal: &Hypothesis, most_left: f64) -> Option<(Self, Observation)> {
         let references = references(observation);
         if references.len() < 2 {
             return None;
         }
-        let PolesByFrf { modes, table } =
-            poles_by_frf(observation, nominal, settings, (&references, CALLED_DRIFT))?;
+        let PolesByFrf { modes, table, own } =
+            poles_by_frf(observation, nominal, most_left, (&references, CALLED_DRIFT))?;
         let p_value = table.chance()?;
         let all: Vec<usize> = (0..references.len()).collect();
         if p_value >= CALLED_DRIFT || table.farthest(&all) < LEAST_DIFFERENCE {
@@ -48,12 +59,18 @@ impl Drifted {
         if kept.iter().all(|kept| *kept) {
             return None;
         }
-        Some(Drifted { references, kept, modes, table, p_value })
+        let drifted = |levelled| Drifted { references, kept, modes, table, p_value, levelled };
+        if let Some(levelled) = levelled(observation, &own) {
+            return Some((drifted(true), levelled));
+        }
+        let drifted = drifted(false);
+        let agreeing = observation.reduced(|_| true, |pair| drifted.keeps(&pair.reference))?;
+        Some((drifted, agreeing))
     }
 
     /// Whether the diagnosis goes on with FRFs of this reference.
     pub(crate) fn keeps(&self, reference: &Channel) -> bool {
         let at = self.references.iter().position(|own| own == reference);
-        at.is_none_or(|at| self.kept[at])
+        self.levelled || at.is_none_or(|at| self.kept[at])
     }
 }

@@ -2,7 +2,6 @@
 
 use super::table::{Cell, Table, chance};
 use crate::modal::recorded;
-use crate::settings::ModalSettings;
 use crate::settings::drift::poles::{KNOWN_SHARE, MOST_DAMPING_FACTOR, MOST_MOVED};
 use crate::{Hypothesis, Observation};
 use jointscope_inference::each;
@@ -10,7 +9,7 @@ use jointscope_model_error::{RecordedMode, RecordedModes};
 use jointscope_spectra::Channel;
 
 /// The recording's references, in its order.
-pub(super) fn references(observation: &Observation) -> Vec<Channel> {
+pub(crate) fn references(observation: &Observation) -> Vec<Channel> {
     distinct(observation.pairs().iter().map(|pair| &pair.reference))
 }
 
@@ -28,6 +27,9 @@ fn distinct<'a>(channels: impl Iterator<Item = &'a Channel>) -> Vec<Channel> {
 pub(super) struct PolesByFrf {
     pub modes: RecordedModes,
     pub table: Table,
+    /// The modes of each reference's FRFs by themselves, and which of them is each mode of the table; `None`
+    /// where they do not tell all there is.
+    pub own: Vec<Option<(RecordedModes, Vec<Option<usize>>)>>,
 }
 
 /// One reference's FRFs and their modes.
@@ -36,18 +38,19 @@ struct ReferenceModes {
     modes: RecordedModes,
 }
 
-/// What the FRFs say; `None` where the references' modes differ no more than chance makes with the
-/// probability `certain`, each reference's FRFs taken together.
+/// What the FRFs say, of references whose free fits leave no more than `most_left` in χ² per degree of freedom;
+/// `None` where the references' modes differ no more than chance makes with the probability `certain`, each
+/// reference's FRFs taken together.
 pub(super) fn poles_by_frf(
     observation: &Observation,
     nominal: &Hypothesis,
-    settings: &ModalSettings,
+    most_left: f64,
     (references, certain): (&[Channel], f64),
 ) -> Option<PolesByFrf> {
     let of = |reference: &Channel| {
         let part = observation.reduced(|_| true, |pair| pair.reference == *reference)?;
         // Where modes do not tell all there is in the FRFs, what they leave moves them too.
-        let modes = recorded(&part, nominal).filter(|m| m.chi2_per_dof < settings.free_fit_limit)?;
+        let modes = recorded(&part, nominal).filter(|m| m.chi2_per_dof < most_left)?;
         Some(ReferenceModes { part, modes })
     };
     let struck: Vec<Option<ReferenceModes>> = each(references, of);
@@ -82,7 +85,12 @@ pub(super) fn poles_by_frf(
         responses: responses.len(),
         references: references.len(),
     };
-    Some(PolesByFrf { modes: base.clone(), table })
+    let modes = base.clone();
+    let own = struck.into_iter().zip(partners).map(|(struck, of)| {
+        let of = table.modes.iter().map(|&r| of[r]).collect();
+        Some((struck?.modes, of))
+    });
+    Some(PolesByFrf { modes, own: own.collect(), table })
 }
 
 /// ln of the natural frequency of each `compared` mode over that of `base`, FRF by FRF.

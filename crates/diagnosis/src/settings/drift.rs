@@ -21,6 +21,12 @@ pub(crate) mod differences {
     /// Differences of natural frequencies, as a share of the half-width, below which nothing is called drift:
     /// a free fit's residual terms leave as much wrong.
     pub(crate) const LEAST_DIFFERENCE: f64 = 0.005;
+    /// χ² per degree of freedom that a reference's free fit may leave for drift to be taken out: that of frames
+    /// whose damping is the same at all rates was 1.3 to 1.9.
+    pub(crate) const NEARLY_ALL: f64 = 3.0;
+    /// Distance in ln ω from the mean of all references up to which drift is taken out of FRFs: four kelvins make
+    /// steel that much softer. What is farther off may be another structure.
+    pub(crate) const MOST_LEVELLED: f64 = 1e-3;
     /// Probability by chance from which two references agree.
     pub(crate) const AGREE: f64 = 0.01;
 }

@@ -1,9 +1,9 @@
 //! The diagnosis on recordings of the simulated laboratory, whose hidden physics it is not told.
 
 use crate::common::recorded;
-use jointscope::{Fixture, Says};
 use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
 use jointscope::fixture::{Dof, Effect, EffectKind, Place};
+use jointscope::{Fixture, Says};
 
 fn diagnose(effects: Vec<Effect>, seed: u64) -> Diagnosis {
     let (fixture, frfs) = recorded(effects, seed);
@@ -45,7 +45,8 @@ fn a_forgotten_mass_is_found_with_its_place_size_and_a_prediction_of_what_was_he
 
 #[test]
 fn a_mass_on_the_face_of_a_block_is_told_with_its_height_above_the_axis() {
-    let lump = |height| Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.11, 0.06, height]);
+    let lump =
+        |height| Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.11, 0.06, height]);
     let diagnosis = diagnose(vec![lump(0.03)], 12);
     let [finding] = &diagnosis.findings[..] else { panic!("{:?}", diagnosis.findings) };
     assert!(finding.effect.is_named_as(&lump(0.03)) && finding.probability > 0.9, "{}", finding.says());

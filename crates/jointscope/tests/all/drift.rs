@@ -5,7 +5,7 @@ use crate::common::{RATIOS, believed, four_pairs, hammer, lines};
 use crate::model_error::told;
 use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, TestDrift, Verdict};
 use jointscope::fixture::{Dof, Effect, EffectKind, Place};
-use jointscope::{Fixture, FrfPair, FrfSet, SpectralLines};
+use jointscope::{Fixture, FrfPair, FrfSet, Says, SpectralLines};
 use jointscope_rig::{HammerSetup, Instrument, drawn_within_tolerance, frfs, generator};
 use num_complex::Complex64;
 
@@ -67,6 +67,15 @@ fn blocks(effects: &[Effect], course: Course, seed: u64) -> (Fixture, FrfSet) {
     (fixture, frfs)
 }
 
+/// The same with a fifth of the noise.
+fn quiet_blocks(effects: &[Effect], course: Course, seed: u64) -> (Fixture, FrfSet) {
+    let fixture = believed(RATIOS);
+    let quiet = HammerSetup { noise_response: 0.001, noise_force: 1e-4, ..hammer(seed) };
+    let lines = SpectralLines::even(10.0, 2.0, 640).unwrap();
+    let frfs = struck(&fixture, effects, course, (&four_pairs(), &lines), &quiet);
+    (fixture, frfs)
+}
+
 fn frame(course: Course, seed: u64) -> (Fixture, FrfSet) {
     let fixture = storeys();
     let lines = SpectralLines::even(20.0, 1.0, 280).unwrap();
@@ -98,6 +107,24 @@ fn a_joint_that_softens_between_references_is_drift_and_no_misplaced_point() {
     drifted(&diagnosis, "joints/J", &[0.0, -0.015]);
     assert_eq!(diagnosis.verdict, Verdict::Consistent, "{}", told(&diagnosis));
     assert!(diagnosis.observation.pairs().iter().all(|pair| pair.reference.point == "1"));
+}
+
+#[test]
+fn what_some_kelvins_make_is_taken_out_and_all_references_count() {
+    for effects in [vec![], vec![compliance()]] {
+        let (fixture, frfs) = quiet_blocks(&effects, &[("2", vec![softer("J", 0.9991)])], 34);
+        let diagnosis = diagnosed(&(fixture, frfs));
+        let drift = diagnosis.drift.as_ref().unwrap();
+        assert!(drift.taken_out && drift.references.iter().all(|own| own.kept), "{drift:?}");
+        assert!(drift.says().contains("taken out"), "{}", drift.says());
+        assert_eq!(diagnosis.observation.pairs().len(), 4, "{}", told(&diagnosis));
+        let found: Vec<EffectKind> = diagnosis.findings.iter().map(|own| own.effect.kind).collect();
+        let hidden: Vec<EffectKind> = effects.iter().map(|own| own.kind).collect();
+        assert_eq!(found, hidden, "{}", told(&diagnosis));
+        // What is left is noise: of FRFs that are not put right it is several times that.
+        let left = diagnosis.search.repaired.chi2_per_dof(&diagnosis.observation);
+        assert!(left < 1.15, "{left}, {}", told(&diagnosis));
+    }
 }
 
 #[test]
