@@ -44,20 +44,29 @@ pub(crate) fn without_early_end(
 
 /// The observation as if records had not ended before the structure was silent, of each reference by its own
 /// poles, where the structure drifted from one to the next: what still rang of a mode is out of phase by all
-/// that its frequency is off. `None` where one of them tells of no such end by itself.
+/// that its frequency is off. And where they ended, on the mean of all. `None` where one of them tells of no such
+/// end by itself, or there is one only.
 pub(crate) fn without_ends_of_references(
     observation: &Observation,
     fixture: &Fixture,
-) -> Option<Observation> {
+) -> Option<(Observation, RecordEnd)> {
+    let references = references(observation);
+    let count = references.len() as f64;
+    if references.len() < 2 {
+        return None;
+    }
+    let mut mean = RecordEnd { after: 0.0, left: 0.0 };
     let n = observation.lines().len();
     let mut missing = vec![Complex64::ZERO; observation.values().len()];
-    for reference in references(observation) {
+    for reference in references {
         let part = observation.reduced(|_| true, |pair| pair.reference == reference)?;
-        let (_, own) = RecordEnd::of(part.weighted(), &modes_options(&part, fixture))?;
+        let (end, own) = RecordEnd::of(part.weighted(), &modes_options(&part, fixture))?;
+        mean.after += end.after / count;
+        mean.left += end.left / count;
         let frfs = observation.pairs().iter().enumerate().filter(|(_, pair)| pair.reference == reference);
         for ((frf, _), own) in frfs.zip(own.chunks_exact(n)) {
             missing[frf * n..][..n].copy_from_slice(own);
         }
     }
-    observation.plus(&missing)
+    Some((observation.plus(&missing)?, mean))
 }

@@ -75,18 +75,20 @@ fn of_one_structure(
     options: &DiagnosisOptions,
 ) -> (Observation, Option<RecordEnd>, Option<Drifted>) {
     let drifted = |of: &Observation| Drifted::of(of, nominal, &options.settings.modal);
+    let by_reference = || without_ends_of_references(&observation, nominal.fixture());
     let (restored, early_end) = without_early_end(observation.clone(), nominal.fixture());
-    let Some((drift, mut without)) = drifted(&restored) else { return (restored, early_end, None) };
-    let mut drift = Some(drift);
-    if early_end.is_some()
-        && let Some(each) = without_ends_of_references(&observation, nominal.fixture())
-    {
-        (drift, without) = match drifted(&each) {
-            Some((drift, without)) => (Some(drift), without),
-            None => (None, each),
-        };
+    let drift = drifted(&restored);
+    // Of a structure that drifted, poles of all references together tell the end of the records less well, or
+    // not at all.
+    let each = if drift.is_some() == early_end.is_some() { by_reference() } else { None };
+    match (each, drift) {
+        (Some((each, end)), _) => match drifted(&each) {
+            Some((drift, without)) => (without, Some(end), Some(drift)),
+            None => (each, Some(end), None),
+        },
+        (None, Some((drift, without))) => (without, early_end, Some(drift)),
+        (None, None) => (restored, early_end, None),
     }
-    (without, early_end, drift)
 }
 
 /// The observation of the lines that are asked for and do not contradict all others; and the bands, Hz, of

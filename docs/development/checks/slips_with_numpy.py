@@ -21,6 +21,7 @@ H1 and coherence of ten blows with 0.3 % noise, or hits over time. Kinds:
     bench   natural frequencies off by 0.3 %, shapes of elastic modes by 1 %, structural damping, sensors 0.7 mm and impacts 1 mm beside their points: nothing, by itself `consistent`; the same since a baseline with other places; or 80 to 150 g on A: that alone, its mass within its interval
     ended   records of 0.4 s whose end comes while 3 to 20 % of a mode still rings, blows 10 ms after their begin and 0.5 to 1.1 ms long by point, FRFs of them: nothing, by itself `consistent`; the same since a baseline that began otherwise; or 20 to 60 g on A: that alone, with 0.9, its mass within its interval
     cut     the same as `ended`, but for errors as in `bench`, and 80 to 150 g: nothing, and that mass within its interval, with nothing else of 0.5
+    warm    the same as `cut`, but for natural frequencies up to 0.03 % higher or lower, by reference, as the structure warms up and cools down
     foam    a free fixture, and a spring with a dashpot under either block: both supports, within a tenth, with 0.8
 
 Ends with status 1 where one is not right, or where scores of `joint` have a root mean square above 1.6.
@@ -189,8 +190,8 @@ def case(kind, number, seed, program, folder):
         return column(random, program, folder)
     if kind == "second":
         return second(fixture, structure.truth, random, program, folder)
-    if kind in ("bench", "ended", "cut"):
-        way = {"bench": bench, "ended": ended, "cut": functools.partial(ended, errs=True)}[kind]
+    if kind in ("bench", "ended", "cut", "warm"):
+        way = {"bench": bench, "ended": ended, "cut": functools.partial(ended, errs=True), "warm": functools.partial(ended, errs=True, drifts=True)}[kind]
         return way(fixture, structure.truth, number, random, program, folder)
     if kind in ("moved", "changed", "foam"):
         return {"moved": moved, "changed": changed, "foam": foam}[kind](structure, number, random, program, folder)
@@ -297,8 +298,8 @@ def foam(structure, number, random, program, folder):
     return f"{answer['verdict']} {found}, {stiffness.round()} N/m", is_right
 
 
-def ended(fixture, truth, number, random, program, folder, errs=False):
-    """FRFs as an analyser makes them of records that end too early: spectra of time signals that were cut off. Where it `errs`, of a bench as benches are."""
+def ended(fixture, truth, number, random, program, folder, errs=False, drifts=False):
+    """FRFs as an analyser makes them of records that end too early: spectra of time signals that were cut off. Where it `errs`, of a bench as benches are; where it `drifts`, of a structure that is stiffer or softer by reference."""
     longest = random.uniform(1.6, 3.5)
     mass = float(random.uniform(*(0.08, 0.15) if errs else (0.02, 0.06))) if number % 3 == 2 else 0.0
     structure = Structure(truth, added=mass)
@@ -319,7 +320,8 @@ def ended(fixture, truth, number, random, program, folder, errs=False):
     for name, begin in [("baseline.uff", 0.006), ("test.uff", 0.01)][0 if number % 3 == 1 else 1 :]:
         blows = dict(zip("124", random.uniform(6e-4, 1e-3) * random.uniform(0.9, 1.1, 3)))
         beside = [{point: far * random.standard_normal() if errs else 0.0 for point in truth["points"]} for far in (7e-4, 1e-3)]
-        write_frfs(folder / name, cut_off(structure, begin, blows, beside), random)
+        warmer = dict(zip("124", 1 + 3e-4 * random.uniform(-1, 1, 3))) if drifts else {}
+        write_frfs(folder / name, cut_off(structure, begin, blows, beside, warmer), random)
     baseline = ["--baseline", "baseline.uff"] if number % 3 == 1 else []
     answer = run(program, folder, "diagnose", "fixture.json", *baseline, "test.uff")
     found = [name for name in found_by(answer, "mass") if name[2] >= 0.5 or not errs]
@@ -328,8 +330,8 @@ def ended(fixture, truth, number, random, program, folder, errs=False):
     return f"{answer['verdict']} {found}, {1000 * mass:.1f} g, {np.exp(-longest):.3f} left", is_mass if mass else answer["verdict"] == "consistent"
 
 
-def cut_off(structure, begin, blows, beside, rate=5120.0, samples=2048):
-    """Accelerances by records of `samples`, blows beginning at `begin` that last for so long by reference, sensors and impacts so far `beside` their points; the motion itself is that of a record 64 times as long."""
+def cut_off(structure, begin, blows, beside, warmer, rate=5120.0, samples=2048):
+    """Accelerances by records of `samples`, blows beginning at `begin` that last for so long by reference, sensors and impacts so far `beside` their points, natural frequencies so many times what they are by reference where it is `warmer`; the motion itself is that of a record 64 times as long."""
     length = 64 * samples
     s, time = 2j * np.pi * np.fft.rfftfreq(length, 1 / rate), np.arange(length) / rate
     exact = {}
@@ -337,7 +339,8 @@ def cut_off(structure, begin, blows, beside, rate=5120.0, samples=2048):
         force = np.where((time > begin) & (time < begin + blows[reference]), np.sin(np.pi * (time - begin) / blows[reference]) ** 2, 0.0)
         spectrum = np.fft.rfft(force)
         residues = (structure.row(response, beside[0][response]) @ structure.shapes) * (structure.row(reference, beside[1][reference]) @ structure.shapes)
-        modes = [s**2 / (s**2 + 2 * z * w * s + w * w) if w > 60 else np.ones_like(s) for z, w in zip(structure.ratios, structure.frequencies)]
+        frequencies = warmer.get(reference, 1.0) * structure.frequencies
+        modes = [s**2 / (s**2 + 2 * z * w * s + w * w) if w > 60 else np.ones_like(s) for z, w in zip(structure.ratios, frequencies)]
         signal = np.fft.irfft(sum(r * mode for r, mode in zip(residues, modes)) * spectrum, length)[:samples]
         exact[response, reference] = (np.fft.rfft(signal) / np.fft.rfft(force[:samples]))[1 : len(LINES) + 1]
     return exact
@@ -429,7 +432,7 @@ def main():
     parser.add_argument("program", type=lambda path: str(pathlib.Path(path).resolve()))
     parser.add_argument("--cases", type=int, default=7)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", nargs="*", default=["null", "hammer", "sensor", "losses", "record", "joint", "hits", "window", "column", "second", "moved", "changed", "bench", "ended", "cut", "foam"])
+    parser.add_argument("--only", nargs="*", default=["null", "hammer", "sensor", "losses", "record", "joint", "hits", "window", "column", "second", "moved", "changed", "bench", "ended", "cut", "warm", "foam"])
     parser.add_argument("--keep", type=pathlib.Path)
     arguments = parser.parse_args()
     is_right = True
