@@ -97,13 +97,10 @@ fn parts(fixture: &Fixture) -> Vec<MassPart> {
         let path = format!("physics/{index}");
         let turns = |name: &str| fixture.body(name).is_some_and(|body| body.kind.rotates());
         match (effect.kind, &effect.place) {
-            // Both have the abscissa first and the mass second; a resonator moves along y alone.
+            // Both have the abscissa first and the mass second.
             (EffectKind::AddedMass | EffectKind::AttachedResonator, Place::Body(name)) => {
                 let mut part = point(path, effect.value(1), effect.value(0), turns(name));
-                if effect.kind == EffectKind::AddedMass {
-                    let about_axis = effect.value(1) * effect.value(2).powi(2);
-                    part.inertia = part.inertia.map(|inertia| inertia + about_axis);
-                }
+                part.inertia = part.inertia.map(|inertia| inertia + effect.inertia_about_axis());
                 parts.push(part);
             }
             (EffectKind::JointMass, Place::Joint(name)) => {

@@ -129,8 +129,7 @@ impl Diagnosis {
         let fitter = Fitter { observation: searched, settings: &options.settings, watch };
         let mut parts = match &options.baseline {
             Some(baseline) => {
-                let nominal = Hypothesis::nominal(fixture, options.exact);
-                let baseline = usable.part_of_baseline(baseline, &nominal)?;
+                let baseline = usable.part_of_baseline(baseline)?;
                 changed_since(&fitter, &observation, baseline, (fixture, options.exact))?
             }
             None => routes::judged(&fitter, fixture, options)?,

@@ -14,9 +14,9 @@
 //! 3. **Little drift** ([`levelled`]). Where natural frequencies differ by no more than some kelvins make them,
 //!    each mode of each reference is put where it lies on the mean of all, and the diagnosis goes on with all
 //!    FRFs.
-//!    **Agreeing references** ([`agreement`]). Else the most references whose poles agree; it goes on with
-//!    theirs.
-//! 4. **What drifted** ([`attribution`]). Each stiffness moves each mode by its share of the strain energy, d
+//! 4. **Agreeing references** ([`agreement`]). Else it goes on with those of the most references whose poles
+//!    agree.
+//! 5. **What drifted** ([`attribution`]). Each stiffness moves each mode by its share of the strain energy, d
 //!    ln ω/d ln k = s/2. The shares of the model that the diagnosis ends with tell which stiffness explains
 //!    the differences, and by how much.
 

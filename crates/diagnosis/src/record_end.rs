@@ -25,21 +25,14 @@ pub fn restored(frfs: &FrfSet) -> Option<(FrfSet, RecordEnd)> {
     Some((accelerances.to_form(frfs.form()).ok()?, end))
 }
 
-/// The observation as if records had not ended before the structure was silent, and where they ended; as it is
+/// The observation as if records had not ended before the structure was silent, and where they ended; `None`
 /// where they tell of no such end.
 pub(crate) fn without_early_end(
-    observation: Observation,
+    observation: &Observation,
     fixture: &Fixture,
-) -> (Observation, Option<RecordEnd>) {
-    let restored = || {
-        let options = modes_options(&observation, fixture);
-        let (end, missing) = RecordEnd::of(observation.weighted(), &options)?;
-        Some((observation.plus(&missing)?, end))
-    };
-    match restored() {
-        Some((restored, end)) => (restored, Some(end)),
-        None => (observation, None),
-    }
+) -> Option<(Observation, RecordEnd)> {
+    let (end, missing) = RecordEnd::of(observation.weighted(), &modes_options(observation, fixture))?;
+    Some((observation.plus(&missing)?, end))
 }
 
 /// The observation as if records had not ended before the structure was silent, of each reference by its own

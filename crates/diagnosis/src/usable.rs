@@ -13,6 +13,7 @@ use std::sync::Arc;
 /// What of a recording a diagnosis rests on.
 pub(crate) struct Usable<'a> {
     pub options: &'a DiagnosisOptions,
+    nominal: &'a Hypothesis,
     /// Bands, Hz, of lines that contradict all others.
     pub contradictory: Vec<(f64, f64)>,
     /// The end of the records, where it came too early.
@@ -29,12 +30,12 @@ impl<'a> Usable<'a> {
     pub(crate) fn of(
         frfs: &FrfSet,
         options: &'a DiagnosisOptions,
-        nominal: &Hypothesis,
+        nominal: &'a Hypothesis,
         work: Arc<Work>,
     ) -> Result<(Self, Observation), DiagnosisError> {
         let (observation, contradictory) = without_contradictory(frfs, options, nominal, work)?;
         let (observation, early_end, drifted) = of_one_structure(observation, nominal, options);
-        Ok((Usable { options, contradictory, early_end, drifted }, observation))
+        Ok((Usable { options, nominal, contradictory, early_end, drifted }, observation))
     }
 
     /// The FRFs to be held out that are of references which agree.
@@ -46,24 +47,19 @@ impl<'a> Usable<'a> {
     ///
     /// # Errors
     /// FRFs that cannot be used.
-    pub(crate) fn part_of_baseline(
-        &self,
-        baseline: &FrfSet,
-        nominal: &Hypothesis,
-    ) -> Result<Observation, DiagnosisError> {
+    pub(crate) fn part_of_baseline(&self, baseline: &FrfSet) -> Result<Observation, DiagnosisError> {
         let in_use = |hz| is_asked_for(self.options, hz) && !is_within(&self.contradictory, hz);
-        let observation = self.agreeing(Observation::new(baseline, in_use)?);
-        Ok(of_one_structure(observation, nominal, self.options).0)
+        let observation = Observation::new(baseline, in_use)?;
+        let observation = match &self.drifted {
+            Some(drifted) => drifted.agreeing(&observation),
+            None => observation,
+        };
+        Ok(of_one_structure(observation, self.nominal, self.options).0)
     }
 
     /// Whether an FRF is of a reference that agrees with the others.
     fn keeps(&self, pair: &FrfPair) -> bool {
         self.drifted.as_ref().is_none_or(|drifted| drifted.keeps(&pair.reference))
-    }
-
-    /// The observation of the references that agree, or all of it where that leaves nothing.
-    fn agreeing(&self, observation: Observation) -> Observation {
-        observation.reduced(|_| true, |pair| self.keeps(pair)).unwrap_or(observation)
     }
 }
 
@@ -74,20 +70,26 @@ fn of_one_structure(
     nominal: &Hypothesis,
     options: &DiagnosisOptions,
 ) -> (Observation, Option<RecordEnd>, Option<Drifted>) {
-    let drifted = |of: &Observation| Drifted::of(of, nominal, &options.settings.modal);
-    let by_reference = || without_ends_of_references(&observation, nominal.fixture());
-    let (restored, early_end) = without_early_end(observation.clone(), nominal.fixture());
-    let drift = drifted(&restored);
+    let without_drift =
+        |observation: Observation| match Drifted::of(&observation, nominal, &options.settings.modal) {
+            Some((drifted, without)) => (without, Some(drifted)),
+            None => (observation, None),
+        };
+    let (restored, end) = match without_early_end(&observation, nominal.fixture()) {
+        Some((restored, end)) => (Some(restored), Some(end)),
+        None => (None, None),
+    };
+    let (without, drifted) = without_drift(restored.unwrap_or_else(|| observation.clone()));
     // Of a structure that drifted, poles of all references together tell the end of the records less well, or
-    // not at all.
-    let each = if drift.is_some() == early_end.is_some() { by_reference() } else { None };
-    match (each, drift) {
-        (Some((each, end)), _) => match drifted(&each) {
-            Some((drift, without)) => (without, Some(end), Some(drift)),
-            None => (each, Some(end), None),
-        },
-        (None, Some((drift, without))) => (without, early_end, Some(drift)),
-        (None, None) => (restored, early_end, None),
+    // not at all. Where they tell drift and no end, there is none.
+    let is_in_doubt = end.is_some() == drifted.is_some();
+    let by_reference = || without_ends_of_references(&observation, nominal.fixture());
+    match is_in_doubt.then(by_reference).flatten() {
+        Some((each, end)) => {
+            let (without, drifted) = without_drift(each);
+            (without, Some(end), drifted)
+        }
+        None => (without, end, drifted),
     }
 }
 

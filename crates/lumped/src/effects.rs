@@ -110,14 +110,11 @@ fn footing<'a>(fixture: &'a Fixture, effect: &'a Effect) -> [Option<Action<'a>>;
 
 /// A mass at a height above its body's axis goes back and forth along x as the body turns.
 fn back_and_forth<'a>(fixture: &'a Fixture, effect: &'a Effect) -> Option<Action<'a>> {
-    let [x, mass, height] = [0, 1, 2].map(|index| effect.value(index));
-    let turns = |body: &usize| height != 0.0 && fixture.bodies()[*body].kind.rotates();
+    let inertia = effect.inertia_about_axis();
+    let turns = |body: &usize| inertia != 0.0 && fixture.bodies()[*body].kind.rotates();
     let body = body_of(fixture, &effect.place).filter(turns)?;
-    let station = Station { body, x, dof: Dof::Rotation };
-    Some(Action::Through {
-        motion: TermStation::single(station),
-        law: PointLaw::Mass(mass * height * height),
-    })
+    let station = Station { body, x: effect.value(0), dof: Dof::Rotation };
+    Some(Action::Through { motion: TermStation::single(station), law: PointLaw::Mass(inertia) })
 }
 
 /// What an effect does; `None` where its place does not exist.

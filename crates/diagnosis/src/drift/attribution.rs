@@ -1,7 +1,7 @@
 //! Which stiffness drifted: by the share of the strain energy that it has in each mode.
 
 use super::drifted::Drifted;
-use super::poles_by_frf::{poles_by_frf, references};
+use super::poles_by_frf::{by_reference, poles_by_frf, references};
 use super::table::{Cell, Fit, Table, chance};
 use crate::settings::Settings;
 use crate::settings::drift::attribution::{
@@ -88,7 +88,8 @@ impl TestDrift {
         let references = references(&observation);
         let nominal = Hypothesis::nominal(fixture, false);
         let most_left = Settings::default().modal.free_fit_limit;
-        poles_by_frf(&observation, &nominal, most_left, (&references, 1.0 + CALLED_DRIFT))?.table.chance()
+        let struck = by_reference(&observation, &nominal, &references);
+        poles_by_frf(&observation, &struck, (most_left, 1.0 + CALLED_DRIFT))?.table.chance()
     }
 }
 

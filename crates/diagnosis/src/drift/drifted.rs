@@ -2,7 +2,9 @@
 
 use super::agreement::agreeing;
 use super::levelled::levelled;
-use super::poles_by_frf::{PolesByFrf, poles_by_frf, references};
+use super::poles_by_frf::{
+    PolesByFrf, ReferenceModes, by_reference, leaves_between, poles_by_frf, references,
+};
 use super::table::Table;
 use crate::settings::ModalSettings;
 use crate::settings::drift::differences::{CALLED_DRIFT, LEAST_DIFFERENCE, NEARLY_ALL};
@@ -32,19 +34,28 @@ impl Drifted {
         nominal: &Hypothesis,
         settings: &ModalSettings,
     ) -> Option<(Self, Observation)> {
-        // Where modes do not tell all there is, little drift may be taken out, but no reference left out.
-        let least_drift = || Self::told(observation, nominal, NEARLY_ALL).filter(|(own, _)| own.levelled);
-        Self::told(observation, nominal, settings.free_fit_limit).or_else(least_drift)
-    }
-
-    /// The same of references whose free fits leave no more than `most_left` in χ² per degree of freedom.
-    fn told(observation: &Observation, nominal: &Hypothesis, most_left: f64) -> Option<(Self, Observation)> {
         let references = references(observation);
         if references.len() < 2 {
             return None;
         }
-        let PolesByFrf { modes, table, own } =
-            poles_by_frf(observation, nominal, most_left, (&references, CALLED_DRIFT))?;
+        let struck = by_reference(observation, nominal, &references);
+        let limit = settings.free_fit_limit;
+        let told = |most_left: f64| Self::told(observation, (&references, &struck), most_left);
+        // Where modes do not tell all there is, little drift may be taken out, but no reference left out.
+        let least_drift = || {
+            let others = leaves_between(&struck, (limit, NEARLY_ALL));
+            others.then(|| told(NEARLY_ALL)).flatten().filter(|(drifted, _)| drifted.levelled)
+        };
+        told(limit).or_else(least_drift)
+    }
+
+    /// The same of references whose free fits leave less than `most_left` in χ² per degree of freedom.
+    fn told(
+        observation: &Observation,
+        (references, struck): (&[Channel], &[Option<ReferenceModes>]),
+        most_left: f64,
+    ) -> Option<(Self, Observation)> {
+        let PolesByFrf { modes, table, own } = poles_by_frf(observation, struck, (most_left, CALLED_DRIFT))?;
         let p_value = table.chance()?;
         let all: Vec<usize> = (0..references.len()).collect();
         if p_value >= CALLED_DRIFT || table.farthest(&all) < LEAST_DIFFERENCE {
@@ -59,13 +70,18 @@ impl Drifted {
         if kept.iter().all(|kept| *kept) {
             return None;
         }
-        let drifted = |levelled| Drifted { references, kept, modes, table, p_value, levelled };
-        if let Some(levelled) = levelled(observation, &own) {
-            return Some((drifted(true), levelled));
-        }
-        let drifted = drifted(false);
-        let agreeing = observation.reduced(|_| true, |pair| drifted.keeps(&pair.reference))?;
-        Some((drifted, agreeing))
+        let levelled = levelled(observation, references, &own);
+        let (references, modes) = (references.to_vec(), modes.clone());
+        let drifted = Drifted { references, kept, modes, table, p_value, levelled: levelled.is_some() };
+        let without = levelled.unwrap_or_else(|| drifted.agreeing(observation));
+        Some((drifted, without))
+    }
+
+    /// The observation of the references with whose FRFs the diagnosis goes on, or all of it where that leaves
+    /// nothing.
+    pub(crate) fn agreeing(&self, observation: &Observation) -> Observation {
+        let agreeing = observation.reduced(|_| true, |pair| self.keeps(&pair.reference));
+        agreeing.unwrap_or_else(|| observation.clone())
     }
 
     /// Whether the diagnosis goes on with FRFs of this reference.

@@ -6,32 +6,30 @@
 //! it in residues is of the order of that drift, parts in ten thousand, and far below what a model is wrong
 //! by.
 
-use super::poles_by_frf::references;
+use super::poles_by_frf::OwnModes;
 use crate::Observation;
 use crate::settings::drift::differences::MOST_LEVELLED;
-use jointscope_model_error::{Pole, RecordedModes};
+use jointscope_model_error::Pole;
+use jointscope_spectra::Channel;
 use num_complex::Complex64;
 
-/// Modes of one reference's FRFs by themselves, and which of them is each mode that is compared.
-type OwnModes = Option<(RecordedModes, Vec<Option<usize>>)>;
-
-/// The observation with the modes of each reference, in their order, where they lie on the mean of all; `None`
-/// where a reference's modes are not told, or lie too far from that.
-pub(super) fn levelled(observation: &Observation, own: &[OwnModes]) -> Option<Observation> {
-    let own: Vec<&(RecordedModes, Vec<Option<usize>>)> =
-        own.iter().map(Option::as_ref).collect::<Option<_>>()?;
-    let references = references(observation);
-    let compared = own.first()?.1.len();
-    let means: Vec<f64> = (0..compared).map(|mode| mean(&own, mode)).collect();
+/// The observation with the modes of each of its references where they lie on the mean of all; `None` where a
+/// reference's modes are not told, or lie too far from that.
+pub(super) fn levelled(
+    observation: &Observation,
+    references: &[Channel],
+    own: &[Option<OwnModes>],
+) -> Option<Observation> {
+    let own: Vec<&OwnModes> = own.iter().map(Option::as_ref).collect::<Option<_>>()?;
+    let means: Vec<f64> = (0..own.first()?.compared.len()).map(|mode| mean(&own, mode)).collect();
     let n = observation.lines().len();
     let omegas: Vec<f64> = observation.lines().omegas().collect();
     let mut missing = vec![Complex64::ZERO; observation.values().len()];
-    for (reference, (modes, of)) in references.iter().zip(own) {
+    for (reference, OwnModes { modes, compared }) in references.iter().zip(own) {
         let frfs = observation.pairs().iter().enumerate().filter(|(_, pair)| pair.reference == *reference);
         let frfs: Vec<usize> = frfs.map(|(index, _)| index).collect();
-        for (mode, mean) in
-            of.iter().zip(&means).filter_map(|(own, mean)| Some((&modes.modes[(*own)?], mean)))
-        {
+        for (own, mean) in compared.iter().zip(&means) {
+            let Some(mode) = own.map(|own| &modes.modes[own]) else { continue };
             let Pole { omega, damping_ratio } = mode.pole;
             if (omega.ln() - mean).abs() > MOST_LEVELLED {
                 return None;
@@ -51,10 +49,10 @@ pub(super) fn levelled(observation: &Observation, own: &[OwnModes]) -> Option<Ob
 
 /// ln ω of a compared mode on the mean of the references that show it, each with the weight that its noise
 /// leaves it.
-fn mean(own: &[&(RecordedModes, Vec<Option<usize>>)], mode: usize) -> f64 {
+fn mean(own: &[&OwnModes], mode: usize) -> f64 {
     let (mut sum, mut weights) = (0.0, 0.0);
-    for (modes, of) in own {
-        if let Some(own) = of[mode] {
+    for OwnModes { modes, compared } in own {
+        if let Some(own) = compared[mode] {
             let weight = modes.deviations(own)[0].powi(-2);
             sum += weight * modes.modes[own].pole.omega.ln();
             weights += weight;

@@ -23,45 +23,62 @@ fn distinct<'a>(channels: impl Iterator<Item = &'a Channel>) -> Vec<Channel> {
     all
 }
 
-/// Modes of one reference, and what all FRFs say of them.
-pub(super) struct PolesByFrf {
-    pub modes: RecordedModes,
-    pub table: Table,
-    /// The modes of each reference's FRFs by themselves, and which of them is each mode of the table; `None`
-    /// where they do not tell all there is.
-    pub own: Vec<Option<(RecordedModes, Vec<Option<usize>>)>>,
-}
-
-/// One reference's FRFs and their modes.
-struct ReferenceModes {
+/// One reference's FRFs and the modes of a free fit of them.
+pub(super) struct ReferenceModes {
     part: Observation,
     modes: RecordedModes,
 }
 
-/// What the FRFs say, of references whose free fits leave no more than `most_left` in χ² per degree of freedom;
-/// `None` where the references' modes differ no more than chance makes with the probability `certain`, each
-/// reference's FRFs taken together.
-pub(super) fn poles_by_frf(
+/// The FRFs of each reference by themselves; `None` where they have no modes.
+pub(super) fn by_reference(
     observation: &Observation,
     nominal: &Hypothesis,
-    most_left: f64,
-    (references, certain): (&[Channel], f64),
-) -> Option<PolesByFrf> {
-    let of = |reference: &Channel| {
+    references: &[Channel],
+) -> Vec<Option<ReferenceModes>> {
+    each(references, |reference| {
         let part = observation.reduced(|_| true, |pair| pair.reference == *reference)?;
-        // Where modes do not tell all there is in the FRFs, what they leave moves them too.
-        let modes = recorded(&part, nominal).filter(|m| m.chi2_per_dof < most_left)?;
+        let modes = recorded(&part, nominal)?;
         Some(ReferenceModes { part, modes })
-    };
-    let struck: Vec<Option<ReferenceModes>> = each(references, of);
+    })
+}
+
+/// Whether a free fit of some reference leaves χ² per degree of freedom between these.
+pub(super) fn leaves_between(struck: &[Option<ReferenceModes>], (least, most): (f64, f64)) -> bool {
+    struck.iter().flatten().any(|own| (least..most).contains(&own.modes.chi2_per_dof))
+}
+
+/// Modes of one reference, and what all FRFs say of them.
+pub(super) struct PolesByFrf<'a> {
+    pub modes: &'a RecordedModes,
+    pub table: Table,
+    /// By reference; `None` where a free fit does not tell all there is.
+    pub own: Vec<Option<OwnModes<'a>>>,
+}
+
+/// The modes of one reference's FRFs by themselves.
+pub(super) struct OwnModes<'a> {
+    pub modes: &'a RecordedModes,
+    /// Which of them is each mode of the table.
+    pub compared: Vec<Option<usize>>,
+}
+
+/// What the FRFs say, of references whose free fits leave less than `most_left` in χ² per degree of freedom:
+/// where modes do not tell all there is in the FRFs, what they leave moves them too. `None` where the
+/// references' modes differ no more than chance makes with the probability `certain`, each reference's FRFs
+/// taken together.
+pub(super) fn poles_by_frf<'a>(
+    observation: &Observation,
+    struck: &'a [Option<ReferenceModes>],
+    (most_left, certain): (f64, f64),
+) -> Option<PolesByFrf<'a>> {
+    let tells = |own: &&ReferenceModes| own.modes.chi2_per_dof < most_left;
+    let struck: Vec<Option<&ReferenceModes>> = struck.iter().map(|own| own.as_ref().filter(tells)).collect();
     // The reference that shows most modes well is the one that the others are compared with.
-    let known_poles = |struck: &Option<ReferenceModes>| {
-        struck
-            .as_ref()
-            .map_or(0, |s| (0..s.modes.modes.len()).filter(|&r| variance(&s.modes, r).is_some()).count())
+    let known_poles = |struck: &Option<&ReferenceModes>| {
+        struck.map_or(0, |s| (0..s.modes.modes.len()).filter(|&r| variance(&s.modes, r).is_some()).count())
     };
     let (first, _) = struck.iter().enumerate().rev().max_by_key(|(_, struck)| known_poles(struck))?;
-    let base = &struck[first].as_ref()?.modes;
+    let base = &struck[first]?.modes;
     let mut partners: Vec<Vec<Option<usize>>> = Vec::new();
     for struck in &struck {
         partners.push(match struck {
@@ -78,26 +95,20 @@ pub(super) fn poles_by_frf(
     let responses = distinct(observation.pairs().iter().map(|pair| &pair.response));
     let cells = cells(base, &compared, (&struck, &partners), &responses);
     let half_widths = compared.iter().map(|&r| base.modes[r].pole.damping_ratio).collect();
-    let table = Table {
-        cells,
-        modes: compared,
-        half_widths,
-        responses: responses.len(),
-        references: references.len(),
-    };
-    let modes = base.clone();
-    let own = struck.into_iter().zip(partners).map(|(struck, of)| {
-        let of = table.modes.iter().map(|&r| of[r]).collect();
-        Some((struck?.modes, of))
+    let own = struck.iter().zip(&partners).map(|(own, of)| {
+        own.map(|own| OwnModes { modes: &own.modes, compared: compared.iter().map(|&r| of[r]).collect() })
     });
-    Some(PolesByFrf { modes, own: own.collect(), table })
+    let own = own.collect();
+    let table =
+        Table { cells, modes: compared, half_widths, responses: responses.len(), references: struck.len() };
+    Some(PolesByFrf { modes: base, table, own })
 }
 
 /// ln of the natural frequency of each `compared` mode over that of `base`, FRF by FRF.
 fn cells(
     base: &RecordedModes,
     compared: &[usize],
-    (struck, partners): (&[Option<ReferenceModes>], &[Vec<Option<usize>>]),
+    (struck, partners): (&[Option<&ReferenceModes>], &[Vec<Option<usize>>]),
     responses: &[Channel],
 ) -> Vec<Cell> {
     let mut cells = Vec::new();
@@ -130,7 +141,7 @@ fn cells(
 fn probability_by_chance(
     base: &RecordedModes,
     compared: &[usize],
-    struck: &[Option<ReferenceModes>],
+    struck: &[Option<&ReferenceModes>],
     partners: &[Vec<Option<usize>>],
 ) -> f64 {
     let (mut chi2, mut degrees) = (0.0, 0);

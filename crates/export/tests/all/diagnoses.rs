@@ -144,10 +144,16 @@ fn a_mass_on_a_face_sits_at_a_node_of_its_own_above_the_axis() {
     let Element::Mass { node, mass } = export.parts[0].element else { panic!("{:?}", export.parts) };
     let node = export.nodes.iter().find(|other| other.number == node).unwrap();
     assert_eq!((node.x, node.y, mass, node.existing), (0.06, 0.025, 0.05, false));
-    let written = |program| write(&export, program, None, &[]).unwrap();
-    for program in [Program::Nastran, Program::Ansys, Program::Abaqus, Program::Calculix, Program::Csv] {
-        let text = written(program);
-        assert!(text.contains("2.5E-2") || text.contains("0.025") || text.contains("2.5-2"), "{text}");
+    for (program, definition) in [
+        (Program::Nastran, "\nGRID*   900001                          6.000000000000-22.500000000000-2"),
+        (Program::Ansys, "\nN,900001,6.0E-2,2.5E-2,0\n"),
+        (Program::Abaqus, "\n900001, 6.000000000000000E-2, 2.500000000000000E-2, 0.\n"),
+        (Program::Calculix, "\n900001, 6.000000000000000E-2, 2.500000000000000E-2, 0.\n"),
+        (Program::Csv, "\nnode,900001,y,,,,2.5E-2,,m\n"),
+    ] {
+        let text = write(&export, program, None, &[]).unwrap();
+        assert!(text.contains(definition), "{text}");
+        assert!(text.contains("node 900001: on body B: tie it to the body there, defined here at x = 0.06 m, y = 0.025 m, z = 0"), "{text}");
     }
 }
 

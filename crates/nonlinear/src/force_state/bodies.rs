@@ -41,7 +41,7 @@ pub(super) fn inertia(fixture: &Fixture, index: usize) -> Option<Inertia> {
     let mut parts = vec![(rigid.mass.value, value(&rigid.x_cg), value(&rigid.inertia))];
     parts.extend(body.masses.iter().map(|m| (m.mass.value, m.x.value, 0.0)));
     let added = effects(fixture, EffectKind::AddedMass, Place::Body(body.name.clone()));
-    parts.extend(added.map(|e| (e.value(1), e.value(0), e.value(1) * e.value(2).powi(2))));
+    parts.extend(added.map(|e| (e.value(1), e.value(0), e.inertia_about_axis())));
     let mass: f64 = parts.iter().map(|p| p.0).sum();
     let x_cg = match rigid.rotates {
         true => parts.iter().map(|p| p.0 * p.1).sum::<f64>() / mass,
