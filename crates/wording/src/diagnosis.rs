@@ -12,15 +12,16 @@ use crate::{Says, model_error};
 use jointscope_diagnosis::{Diagnosis, OddRecord, Tried};
 use jointscope_findings::Verdict;
 
-/// The verdict: what it is, and what to do about it. What the test itself did goes before everything else,
-/// then what the stated quantities would have to be.
+/// The verdict: what it is, and what to do about it. What the test itself did and nothing takes out of its FRFs
+/// goes before everything else, then what the stated quantities would have to be.
 impl Says for Diagnosis {
     fn says(&self) -> String {
         let verdict = match &self.model_error {
             Some(errors) => model_error::verdict(self, errors),
             None => by_noise(self),
         };
-        let drifted = self.drift.as_ref().map_or_else(String::new, |drift| format!("{} ", drift.says()));
+        let drifted = self.drift.as_ref().filter(|drift| !drift.taken_out);
+        let drifted = drifted.map_or_else(String::new, |drift| format!("{} ", drift.says()));
         format!("{drifted}{}{}{verdict}", odd(self).unwrap_or_default(), departed(self))
     }
 }

@@ -5,7 +5,7 @@ use crate::common::{RATIOS, believed, four_pairs, hammer, lines};
 use crate::model_error::told;
 use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, TestDrift, Verdict};
 use jointscope::fixture::{Dof, Effect, EffectKind, Place};
-use jointscope::{Fixture, FrfPair, FrfSet, Says, SpectralLines};
+use jointscope::{Fixture, FrfPair, FrfSet, Remarks, Says, SpectralLines};
 use jointscope_rig::{HammerSetup, Instrument, drawn_within_tolerance, frfs, generator};
 use num_complex::Complex64;
 
@@ -116,7 +116,14 @@ fn what_some_kelvins_make_is_taken_out_and_all_references_count() {
         let diagnosis = diagnosed(&(fixture, frfs));
         let drift = diagnosis.drift.as_ref().unwrap();
         assert!(drift.taken_out && drift.references.iter().all(|own| own.kept), "{drift:?}");
-        assert!(drift.says().contains("taken out"), "{}", drift.says());
+        let said = drift.says();
+        assert!(said.contains("taken out"), "{said}");
+        // What is put right is a remark: the finding comes first.
+        assert!(
+            diagnosis.remarks().contains(&said) && !diagnosis.says().contains(&said),
+            "{}",
+            told(&diagnosis)
+        );
         assert_eq!(diagnosis.observation.pairs().len(), 4, "{}", told(&diagnosis));
         let found: Vec<EffectKind> = diagnosis.findings.iter().map(|own| own.effect.kind).collect();
         let hidden: Vec<EffectKind> = effects.iter().map(|own| own.kind).collect();

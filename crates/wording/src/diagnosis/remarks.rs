@@ -14,6 +14,7 @@ impl Remarks for Diagnosis {
         remarks.extend(of_noise(&self.observation));
         remarks.extend(lines_left_out(self));
         remarks.extend(self.early_end.map(|end| end.says()));
+        remarks.extend(self.drift.as_ref().filter(|drift| drift.taken_out).map(Says::says));
         remarks.extend(falls_short(self));
         remarks.extend(beside_modes(self));
         remarks.extend(swapped_points(self));
