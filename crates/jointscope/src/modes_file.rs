@@ -21,6 +21,7 @@ pub fn modes_file(analysis: &ModalAnalysis) -> Value {
         outside_the_band: modes(&analysis.outside),
         auto_mac: analysis.auto_mac().chunks(analysis.modes.len().max(1)).map(<[f64]>::to_vec).collect(),
         chi2_per_dof: analysis.chi2_per_dof,
+        window_decay: Some(analysis.window_decay).filter(|decay| *decay > 0.0),
         explained: analysis.is_explained(),
         lines: LinesEntry {
             from: hz[0],
@@ -40,6 +41,9 @@ struct ModesFile {
     /// A row a mode of the band.
     auto_mac: Vec<Vec<f64>>,
     chi2_per_dof: f64,
+    /// Decay of the exponential window that was taken off the modes, 1/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    window_decay: Option<f64>,
     /// Whether poles that all FRFs share explain them.
     explained: bool,
     lines: LinesEntry,

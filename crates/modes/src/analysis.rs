@@ -71,6 +71,8 @@ pub struct ModalAnalysis {
     pub complete: bool,
     /// Number of lines recorded in the band, where they were merged.
     pub merged_from: Option<usize>,
+    /// Decay of an exponential window over force and responses that was taken off the modes, 1/s; 0 without one.
+    pub window_decay: f64,
     /// The FRFs used, as accelerances with their variances.
     measured: FrfSet,
     /// How many recorded lines each line stands for, and FRF after FRF each line's part of the squares that
@@ -133,11 +135,22 @@ impl ModalAnalysis {
             columns: observed.grid.columns,
             complete: !observed.grid.row_channels.is_empty(),
             merged_from,
+            window_decay: 0.0,
             measured,
             stands_for: observed.stands_for,
             taken_out,
             rebuilt,
         })
+    }
+
+    /// The same with the structure's own modes, where force and responses were under an exponential window of
+    /// this decay (1/s): FRFs are then taken at s = decay + iω, and every pole reads as much farther left. What
+    /// is rebuilt stays as it was recorded.
+    #[must_use]
+    pub fn without_window(mut self, decay: f64) -> Self {
+        self.window_decay += decay;
+        self.modes.iter_mut().chain(&mut self.outside).for_each(|mode| mode.take_off(decay));
+        self
     }
 
     /// The FRFs.

@@ -53,6 +53,17 @@ impl Mode {
         self.worth >= 1.0
     }
 
+    /// Takes a window's decay (1/s) off the mode's damping.
+    pub(crate) fn take_off(&mut self, decay: f64) {
+        self.pole += decay;
+        let under_window = TAU * self.frequency;
+        let damping = self.damping_ratio * under_window;
+        let own =
+            f64::hypot((under_window * under_window - damping * damping).max(0.0).sqrt(), damping - decay);
+        self.frequency = own / TAU;
+        self.damping_ratio = (damping - decay) / own;
+    }
+
     /// Whether the damping ratio is known by its order of magnitude only.
     pub fn is_vaguely_damped(&self) -> bool {
         self.damping_std > VAGUE_DAMPING * self.damping_ratio

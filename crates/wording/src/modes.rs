@@ -36,6 +36,12 @@ impl Remarks for ModalAnalysis {
             ));
         }
         all.extend(merged);
+        if self.window_decay > 0.0 {
+            all.push(format!(
+                "the exponential window's decay of {} 1/s is taken off the damping ratios",
+                significant(self.window_decay, 4)
+            ));
+        }
         let drifting: Vec<String> = self
             .modes
             .iter()

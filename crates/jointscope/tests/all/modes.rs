@@ -1,10 +1,11 @@
 //! Modes of FRFs without files, of the simulated cases, and of a real free beam whose resonances drift from
 //! hit to hit.
 
-use jointscope::fixture::Damping;
+use jointscope::fixture::{Damping, Effect, EffectKind, Place};
 use jointscope::recordings::{ReadOptions, Recording, Source};
 use jointscope::{
-    Fixture, Instrument, ModalAnalysis, ModesOptions, SpectralLines, measured_damping, modes_file, synthesize,
+    Fixture, Instrument, ModalAnalysis, ModesOptions, Remarks, SpectralLines, measured_damping, modes_file,
+    synthesize,
 };
 use jointscope_samples::{ACROSS, transverse};
 use std::path::{Path, PathBuf};
@@ -39,6 +40,26 @@ fn the_ratios_of_a_synthesized_test_go_back_into_its_fixture_without_a_file() {
     );
     let file = modes_file(&analysis);
     assert_eq!(file["modes"][0]["frequency"].as_f64(), Some(analysis.modes[0].frequency));
+}
+
+#[test]
+fn a_window_s_decay_is_taken_off_the_damping_of_modes_and_said() {
+    let decay = 4.0;
+    let windowed = Effect::new(EffectKind::ExponentialWindow, Place::All, None, &[decay]);
+    let fixture = Fixture::from_json(BLOCKS).unwrap();
+    let as_recorded = fixture.clone().with_physics(vec![windowed]).unwrap();
+    let lines = SpectralLines::even(2.5, 2.5, 600).unwrap();
+    let frfs = synthesize(&as_recorded, &transverse(&ACROSS), &lines, Instrument::AsRecorded).unwrap();
+    let recorded = ModalAnalysis::of(&frfs, &ModesOptions::default()).unwrap();
+    let own = recorded.clone().without_window(decay);
+    for (mode, truth) in own.modes.iter().zip([0.003, 0.0045]) {
+        assert!((mode.damping_ratio / truth - 1.0).abs() < 5e-4, "{mode:?} of {truth}");
+        assert!((-mode.pole.re / mode.pole.norm() / truth - 1.0).abs() < 5e-4, "{mode:?} of {truth}");
+    }
+    assert!(recorded.modes[0].damping_ratio > 1.5 * own.modes[0].damping_ratio);
+    assert_eq!(modes_file(&own)["window_decay"], decay);
+    assert!(own.remarks().iter().any(|said| said.contains("decay of 4")), "{:?}", own.remarks());
+    assert!(modes_file(&recorded).get("window_decay").is_none());
 }
 
 #[test]
