@@ -38,6 +38,7 @@ mod mass_line;
 mod meaning;
 mod model_modes;
 mod numbers;
+mod over_time;
 mod parts;
 mod reciprocity;
 mod recorded_modes;

@@ -3,6 +3,7 @@
 use crate::Figure;
 use crate::figure::deviations;
 use crate::has_dashpots;
+use crate::over_time::nearest_over_time;
 use crate::settings::model_modes::{
     BEYOND_BAND, EXTENSION, FOLLOWED_SHARE, HIGHEST_HZ, LAST_HZ, MOST_LISTED, SAME_FREQUENCY, ZERO_POLE,
 };
@@ -34,11 +35,22 @@ pub struct ModelModes {
     pub modes: Vec<ModelMode>,
     /// Frequency up to which they were looked for, Hz.
     pub to: f64,
+    /// Kinds of the fixture's effects that are known by frequency only: the modes are those with a joint's own
+    /// mass at its ends, and without the losses.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub by_frequency_only: Vec<&'static str>,
 }
 
 impl ModelModes {
     /// The modes up to beyond `highest` (Hz), or up to where there are some.
     pub(crate) fn of(fixture: &Fixture, highest: Option<f64>) -> Result<Self, LumpedError> {
+        let (modes, by_frequency_only) =
+            nearest_over_time(fixture, |nearest| Self::over_time(nearest, highest))?;
+        Ok(ModelModes { by_frequency_only, ..modes })
+    }
+
+    /// As [`ModelModes::of`] of a fixture that has a form over time.
+    fn over_time(fixture: &Fixture, highest: Option<f64>) -> Result<Self, LumpedError> {
         let mut to = highest.map_or(HIGHEST_HZ, |highest| BEYOND_BAND * highest);
         let stands = Some(fixture).filter(|fixture| is_held(fixture)).and_then(as_it_stands);
         let mut poles = Poles::of(fixture, stands.as_ref(), to)?;
@@ -64,7 +76,19 @@ impl ModelModes {
             damping_ratio: (-pole.re / pole.norm()).max(0.0),
             on_supports: soft(k),
         });
-        Ok(ModelModes { rigid, modes: modes.collect(), to })
+        Ok(ModelModes { rigid, modes: modes.collect(), to, by_frequency_only: Vec::new() })
+    }
+
+    /// What of the fixture is not in these modes as it stands, in a sentence without a full stop; `None` where all
+    /// is.
+    pub fn nearness(&self) -> Option<String> {
+        (!self.by_frequency_only.is_empty()).then(|| {
+            format!(
+                "{} known by frequency only: the modes are near ones, of half a joint's own mass at each of its ends and without such losses",
+                self.by_frequency_only.iter().map(|kind| format!("`{kind}`")).collect::<Vec<_>>().join(" and ")
+                    + if self.by_frequency_only.len() == 1 { " is" } else { " are" }
+            )
+        })
     }
 
     /// The first natural frequency in which the assembly bends, Hz.

@@ -33,11 +33,15 @@ pub struct RecordedModes {
     pub missing: Vec<f64>,
 }
 
-/// The modes of accelerances.
+/// The modes of accelerances, under an exponential window of `window_decay` (1/s; 0 without one).
 ///
 /// # Errors
 /// Why there are none, in a sentence.
-pub(crate) fn of(fixture: &Fixture, frfs: &FrfSet, model: &ModelModes) -> Result<RecordedModes, String> {
+pub(crate) fn of(
+    fixture: &Fixture,
+    (frfs, window_decay): (&FrfSet, f64),
+    model: &ModelModes,
+) -> Result<RecordedModes, String> {
     if frfs.all_values().len() > MOST_VALUES {
         return Err("there are too many FRFs and lines for a quick look at their modes: `jointscope modes` takes its time".to_owned());
     }
@@ -51,7 +55,7 @@ pub(crate) fn of(fixture: &Fixture, frfs: &FrfSet, model: &ModelModes) -> Result
         Err(ModesError::Orders { .. }) => ModalAnalysis::of(frfs, &ModesOptions::default()),
         quick => quick,
     };
-    let analysis = analysis.map_err(|error| error.to_string())?;
+    let analysis = analysis.map_err(|error| error.to_string())?.without_window(window_decay);
     let matched = measured_damping(fixture, &analysis);
     let pairs = |index: usize| {
         let matched = matched.as_ref().ok()?;

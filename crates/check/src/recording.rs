@@ -54,6 +54,9 @@ pub struct RecordingCheck {
     /// The same, channels that point the other way turned round: for modes and mass line.
     #[serde(skip)]
     upright: FrfSet,
+    /// Decay of the exponential window over force and responses, 1/s; 0 without one.
+    #[serde(skip)]
+    window_decay: f64,
     /// Bands of lines that contradict all others, Hz.
     #[serde(skip)]
     contradictory: Vec<(f64, f64)>,
@@ -105,6 +108,7 @@ impl RecordingCheck {
         remarks.extend(driving_points.iter().filter_map(of_driving_point));
         let reciprocity = reciprocity::of(&measured_frfs);
         remarks.extend(reciprocity.iter().filter(|pair| pair.odd).map(of_reciprocity));
+        let window_decay = measured.window_decay;
         let mut notes = measured.notes;
         if with_own_effects.physics().iter().any(|effect| effect.kind.is_nonlinear()) {
             notes.push("effects of the fixture that depend on amplitude have no FRF: they are left aside beside the recording's".to_owned());
@@ -127,6 +131,7 @@ impl RecordingCheck {
             modes: None,
             no_modes: None,
             upright: upright(&measured_frfs, &channels),
+            window_decay,
             channels,
             contradictory,
             measured: measured_frfs,
@@ -179,7 +184,7 @@ impl RecordingCheck {
             ));
         }
         (self.modes, self.no_modes) =
-            split(recorded_modes::of(&drawn(fixture.clone()), &self.upright, modes));
+            split(recorded_modes::of(&drawn(fixture.clone()), (&self.upright, self.window_decay), modes));
         let found = match &self.modelled {
             Some(modelled) => {
                 mass_line::of(fixture, &self.upright, modelled, totals, modes, self.modes.as_ref())

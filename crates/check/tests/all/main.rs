@@ -314,3 +314,25 @@ fn a_suspension_too_stiff_to_weigh_by_is_told_with_its_frequency_and_not_with_an
     let why = recording.no_mass_line.unwrap();
     assert!(why.contains("is too near the first bending mode") || why.contains("is held"), "{why}");
 }
+
+#[test]
+fn a_joint_s_mass_and_loss_leave_modes_that_a_fit_of_synthesized_frfs_finds() {
+    let physics = json!([
+        { "kind": "joint_mass", "place": "J", "mass": 0.08 },
+        { "kind": "loss_factor", "place": "J", "loss_factor": 0.01 }
+    ]);
+    let (bare, heavy) = (fixture(&[]), fixture(&[("/physics", physics)]));
+    let first = |fixture: &Fixture| {
+        let check = check(fixture, recorded(fixture));
+        assert!(check.remarks.iter().all(|remark| remark.place != "bodies"), "{:?}", check.remarks);
+        let mode = &check.recording.as_ref().unwrap().modes.as_ref().unwrap().modes[0];
+        let modelled = check.modes.clone().unwrap();
+        (mode.frequency, modelled.modes[0].frequency.value, modelled.by_frequency_only)
+    };
+    let ((recorded, modelled, none), (recorded_heavy, heavy, kinds)) = (first(&bare), first(&heavy));
+    assert!(none.is_empty() && (recorded / modelled - 1.0).abs() < 1e-4, "{recorded} {modelled}");
+    assert_eq!(kinds.len(), 2, "{kinds:?}");
+    // Half of it at each end makes up for half of what the mass takes off.
+    let [off, left] = [modelled, heavy].map(|hz| hz / recorded_heavy - 1.0);
+    assert!(left > 0.0 && left < 0.5 * off, "{recorded_heavy} {heavy} {modelled}");
+}

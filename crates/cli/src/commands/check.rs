@@ -116,6 +116,7 @@ fn summary(check: &Check) -> Vec<String> {
             let ratio = 100.0 * mode.damping_ratio;
             format!("  {}, damping ratio {ratio:.3} %{on_supports}", figure(&mode.frequency))
         }));
+        lines.extend(modes.nearness().map(|nearness| format!("  {nearness}")));
     }
     if let Some(recording) = &check.recording {
         lines.extend(of_recording(recording));

@@ -20,6 +20,10 @@ pub(super) fn modes(modes: &ModelModes, recording: Option<&RecordingCheck>) -> S
             significant(modes.to, 4)
         ));
     let section = Section::new("Modes of the model").with(table);
+    let section = match modes.nearness() {
+        Some(nearness) => section.paragraph(format!("{nearness}.")),
+        None => section,
+    };
     let Some(recording) = recording else { return section };
     let Some(found) = &recording.modes else {
         let why = recording.no_modes.as_deref().unwrap_or_default();
