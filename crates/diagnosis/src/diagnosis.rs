@@ -17,7 +17,7 @@ use crate::usable::Usable;
 use crate::work::Work;
 use crate::{Baseline, Hypothesis, Observation, Watch};
 use jointscope_findings::{HeldOut, Verdict};
-use jointscope_fixture::{EffectKind, Fixture};
+use jointscope_fixture::{Effect, EffectKind, Fixture};
 use jointscope_lumped::Assembly;
 use jointscope_model_error::RecordEnd;
 use jointscope_spectra::FrfSet;
@@ -74,6 +74,9 @@ pub struct Diagnosis {
     /// How the structure changed from reference to reference, where it did: the diagnosis is of the
     /// references that agree.
     pub drift: Option<TestDrift>,
+    /// Stated sensors that were moved from response to response and whose mass was taken off the FRFs: the
+    /// observation, and the fixtures that are held against it, are without them.
+    pub sensors_off: Vec<Effect>,
     /// Effects that were tried by themselves where the model's error decides or nothing explains the
     /// recording, by what they make of its modes: the most probable first.
     pub tried: Vec<Tried>,
@@ -102,7 +105,7 @@ impl Diagnosis {
         let fixture = &with_gains_of_records(fixture, frfs, options);
         let nominal = Hypothesis::nominal(fixture, options.exact);
         let (usable, observation) = Usable::of(frfs, options, &nominal, work)?;
-        let diagnosed = |observation| Self::by_its_route(fixture, &usable, observation, watch);
+        let diagnosed = |observation| Self::by_its_route(&usable, observation, watch);
         let diagnosis = diagnosed(observation)?;
         let diagnosis = match options.baseline {
             None => diagnosis
@@ -112,17 +115,14 @@ impl Diagnosis {
         };
         let diagnosis = diagnosis.within_estimates(options);
         let drift = usable.drifted.as_ref().and_then(|drifted| diagnosis.told_drift(drifted));
+        let sensors_off = usable.sensors_off().to_vec();
         let Usable { contradictory, early_end, .. } = usable;
-        Ok(Diagnosis { contradictory, early_end, drift, ..diagnosis })
+        Ok(Diagnosis { contradictory, early_end, drift, sensors_off, ..diagnosis })
     }
 
     /// What the route of a recording makes of an observation, where FRFs are many of a part of them first.
-    fn by_its_route(
-        fixture: &Fixture,
-        usable: &Usable,
-        observation: Observation,
-        watch: Watch,
-    ) -> Result<Self, DiagnosisError> {
+    fn by_its_route(usable: &Usable, observation: Observation, watch: Watch) -> Result<Self, DiagnosisError> {
+        let fixture = usable.fixture();
         let options = &DiagnosisOptions { hold_out: usable.held_out(), ..usable.options.clone() };
         let few = observation.searched(&options.hold_out);
         let searched = few.as_ref().unwrap_or(&observation);
@@ -156,6 +156,7 @@ impl Diagnosis {
             early_end: None,
             beside_modes: None,
             drift: None,
+            sensors_off: Vec::new(),
             stopped: observation.work().left_out(),
             observation,
             search,

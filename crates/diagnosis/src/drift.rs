@@ -29,4 +29,3 @@ mod table;
 
 pub use attribution::{ModeDrift, ReferenceChange, TestDrift};
 pub(crate) use drifted::Drifted;
-pub(crate) use poles_by_frf::references;

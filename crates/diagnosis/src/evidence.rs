@@ -1,5 +1,6 @@
 //! How probable it is that a hypothesis is right, against others and against physics that none covers.
 
+use crate::departures::has_departed;
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::observation::excess;
@@ -74,4 +75,20 @@ pub(crate) fn explains(fitter: &Fitter, fit: &Fit, strictly: bool) -> bool {
         false => chi2_per_dof < explained(fitter.observation, fitter.settings),
     };
     fits && deviates_by_chance(fitter, &fit.hypothesis)
+}
+
+/// Whether a fit may still lack something large; what fits already can only lack something small, which
+/// the local search finds.
+pub(crate) fn lacks_much(fitter: &Fitter, fit: &Fit) -> bool {
+    let (observation, settings) = (fitter.observation, &fitter.settings.selection);
+    let degrees = observation.degrees() as f64;
+    // With effects the noise's own uncertainty counts too: what they leave may be no more than that.
+    let (fits, noise) = match fit.hypothesis.effect_count() {
+        0 => (settings.fits.0, 0.0),
+        _ => (settings.fits.1, observation.noise_uncertainty()),
+    };
+    // Quantities that had to deviate are a misfit too, which a χ² that is small by chance must not hide.
+    fit.objective > degrees * (1.0 + fits * (2.0 / degrees).sqrt().hypot(noise))
+        || !deviates_by_chance(fitter, &fit.hypothesis)
+        || has_departed(&fit.hypothesis)
 }

@@ -10,14 +10,17 @@
 //! * [`told`] asks which sensor's mass makes the differences between responses, and how surely;
 //! * [`unloaded`] takes the sensor off the recording, H·(1 + m·A) with the accelerance A where it sits, so
 //!   that everything else is judged without it;
+//! * [`stated`] does so with sensors that the fixture states, before anything else;
 //! * [`beside`] puts it back beside what was found then.
 
 mod beside;
 mod by_response;
+mod stated;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests;
 mod told;
 mod unloaded;
 
+pub(crate) use stated::WithoutSensors;
 pub(crate) use told::MovedSensor;

@@ -161,6 +161,14 @@ impl Observation {
         self.with_values(values, |_| 1.0, 0)
     }
 
+    /// The same with so much more variance of each value.
+    pub(crate) fn with_variance_added(&self, variances: &[f64]) -> Self {
+        let weight = self.weight.iter().zip(variances);
+        // Lines that count for nothing stay so.
+        let weight = weight.map(|(weight, added)| weight / (1.0 + 0.5 * weight * added)).collect();
+        Observation { weight, ..self.clone() }
+    }
+
     /// The same with other values, whose weights are this one's times a power of a size, and whose levels are
     /// divided by it.
     fn with_values(&self, values: Vec<Complex64>, size: impl Fn(usize) -> f64, power: i32) -> Option<Self> {

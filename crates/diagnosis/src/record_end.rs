@@ -1,13 +1,12 @@
 //! FRFs of records that ended while the structure still rang.
 
 use crate::Observation;
-use crate::drift::references;
 use crate::modal::modes_options;
 use crate::recorded_lines::is_short;
 use jointscope_fixture::Fixture;
 use jointscope_model_error::RecordEnd;
 use jointscope_modes::ModesOptions;
-use jointscope_spectra::{FrfForm, FrfSet};
+use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet};
 use num_complex::Complex64;
 
 /// FRFs as if records had not ended before the structure was silent, and where they ended; `None` where they
@@ -43,20 +42,39 @@ pub(crate) fn without_ends_of_references(
     observation: &Observation,
     fixture: &Fixture,
 ) -> Option<(Observation, RecordEnd)> {
-    let references = references(observation);
-    let count = references.len() as f64;
-    if references.len() < 2 {
+    without_ends(observation, fixture, |pair| &pair.reference)
+}
+
+/// The same of each response by its own poles, where a sensor was moved from one to the next.
+pub(crate) fn without_ends_of_responses(
+    observation: &Observation,
+    fixture: &Fixture,
+) -> Option<(Observation, RecordEnd)> {
+    without_ends(observation, fixture, |pair| &pair.response)
+}
+
+/// The same of the FRFs of each `channel` by themselves.
+fn without_ends(
+    observation: &Observation,
+    fixture: &Fixture,
+    channel: impl Fn(&FrfPair) -> &Channel,
+) -> Option<(Observation, RecordEnd)> {
+    let mut channels: Vec<&Channel> = observation.pairs().iter().map(&channel).collect();
+    channels.sort();
+    channels.dedup();
+    let count = channels.len() as f64;
+    if channels.len() < 2 {
         return None;
     }
     let mut mean = RecordEnd { after: 0.0, left: 0.0 };
     let n = observation.lines().len();
     let mut missing = vec![Complex64::ZERO; observation.values().len()];
-    for reference in references {
-        let part = observation.reduced(|_| true, |pair| pair.reference == reference)?;
+    for own_channel in channels {
+        let part = observation.reduced(|_| true, |pair| channel(pair) == own_channel)?;
         let (end, own) = RecordEnd::of(part.weighted(), &modes_options(&part, fixture))?;
         mean.after += end.after / count;
         mean.left += end.left / count;
-        let frfs = observation.pairs().iter().enumerate().filter(|(_, pair)| pair.reference == reference);
+        let frfs = observation.pairs().iter().enumerate().filter(|(_, pair)| channel(pair) == own_channel);
         for ((frf, _), own) in frfs.zip(own.chunks_exact(n)) {
             missing[frf * n..][..n].copy_from_slice(own);
         }

@@ -8,7 +8,7 @@ mod parts;
 pub(crate) use parts::{Parts, chance};
 
 use crate::departures::{farthest, has_departed};
-use crate::evidence::{self, explains};
+use crate::evidence::{self, explains, lacks_much};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::held_out::Division;
@@ -73,7 +73,7 @@ pub(crate) fn judged(
     if let Some(found) = refitted.explained_by_odd_record(fitter) {
         return Ok(from_found(given, refitted, found, None));
     }
-    if refitted.lacks_much(fitter, &refitted.refitted)
+    if lacks_much(fitter, &refitted.refitted)
         && let Some((sensor, unloaded)) = moved_sensor(fitter, &refitted)
     {
         return beside_sensor(given, options, refitted, (&sensor, &unloaded));
@@ -98,7 +98,7 @@ fn moved_sensor(fitter: &Fitter, refitted: &Search) -> Option<(MovedSensor, Obse
     fitter.watch.stage("comparing natural frequencies from response to response");
     let nominal = &refitted.nominal.hypothesis;
     let sensor = MovedSensor::of(fitter.observation, nominal, &refitted.candidates)?;
-    let unloaded = sensor.taken_off(fitter.observation)?;
+    let unloaded = sensor.load.taken_off(fitter.observation)?;
     Some((sensor, unloaded))
 }
 
@@ -112,14 +112,14 @@ fn beside_sensor(
     (sensor, unloaded): (&MovedSensor, &Observation),
 ) -> Result<Parts, DiagnosisError> {
     let Given { fitter, fixture, exact, .. } = given;
-    if let Some(found) = as_loaded.explained_by_moved_sensor(fitter, Some(&sensor.effect)) {
+    if let Some(found) = as_loaded.explained_by_moved_sensor(fitter, Some(sensor.effect())) {
         return Ok(from_found(given, as_loaded, found, None));
     }
     let division = Division::of(unloaded, options)?;
     let without = Given { fitter: &fitter.on(unloaded), fixture, exact, division: division.as_ref() };
     let without = Ground::of(without, refitted(without)?).decided(without);
     // What leaves little of the lines beside it is for them to find.
-    let both = without.search.repaired.hypothesis.with(sensor.effect.clone());
+    let both = without.search.repaired.hypothesis.with(sensor.effect().clone());
     let slight = fitter.settings.modal.slight * fitter.observation.degrees() as f64;
     if let Some(repaired) = fitter.local(&both, None, slight).filter(|fit| fit.objective < slight) {
         let found = Search { repaired, ..as_loaded.clone() };
@@ -141,7 +141,7 @@ fn from_found(given: Given, without_effects: Search, found: Search, modal: Optio
 fn compared_by_modes(given: Given, without_effects: &Search) -> Option<ModalJudgement> {
     let Given { fitter, fixture, .. } = given;
     let may_err = !fixture.model_error().is_exact();
-    if !may_err || !without_effects.lacks_much(fitter, &without_effects.refitted) {
+    if !may_err || !lacks_much(fitter, &without_effects.refitted) {
         return None;
     }
     fitter.observation.work().within(fitter.settings.modal.share, || {

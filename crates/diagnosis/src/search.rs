@@ -3,8 +3,7 @@
 
 use crate::candidate::Candidate;
 use crate::catalogue::{catalogue, with_all_wrong_quantities, with_wrong_quantities};
-use crate::departures::has_departed;
-use crate::evidence::{cost, deviates_by_chance, explains, nothing_can_be_stated};
+use crate::evidence::{cost, explains, lacks_much, nothing_can_be_stated};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::odd_record::OddRecord;
@@ -285,22 +284,6 @@ impl Search {
         gain > needed_gain(settings, cost(with) - cost(without), self.candidates.len())
     }
 
-    /// Whether a fit may still lack something large; what fits already can only lack something small, which
-    /// the local search finds.
-    pub(crate) fn lacks_much(&self, fitter: &Fitter, fit: &Fit) -> bool {
-        let (observation, settings) = (fitter.observation, &fitter.settings.selection);
-        let degrees = observation.degrees() as f64;
-        // With effects the noise's own uncertainty counts too: what they leave may be no more than that.
-        let (fits, noise) = match fit.hypothesis.effect_count() {
-            0 => (settings.fits.0, 0.0),
-            _ => (settings.fits.1, observation.noise_uncertainty()),
-        };
-        // Quantities that had to deviate are a misfit too, which a χ² that is small by chance must not hide.
-        fit.objective > degrees * (1.0 + fits * (2.0 / degrees).sqrt().hypot(noise))
-            || !deviates_by_chance(fitter, &fit.hypothesis)
-            || has_departed(&fit.hypothesis)
-    }
-
     /// Fits of `base` with one more effect, best first by objective and penalty of parameters, with the
     /// candidate's index.
     fn ranked(&self, fitter: &Fitter, base: &Fit) -> Vec<(usize, Fit)> {
@@ -309,7 +292,7 @@ impl Search {
         if self.is_sure {
             return self.ranking(fitter).nearby(&base.hypothesis, limit);
         }
-        self.ranking(fitter).of(&base.hypothesis, self.lacks_much(fitter, base), limit)
+        self.ranking(fitter).of(&base.hypothesis, lacks_much(fitter, base), limit)
     }
 
     /// As [`Search::ranked`], for a `base` whose quantities stand already where the effect that is looked for
@@ -357,7 +340,7 @@ impl Search {
                 let without = self.repaired.hypothesis.without(index);
                 // Three effects that leave a large misfit: skip the global search.
                 let global =
-                    self.repaired.hypothesis.effect_count() == 2 && self.lacks_much(fitter, &self.repaired);
+                    self.repaired.hypothesis.effect_count() == 2 && lacks_much(fitter, &self.repaired);
                 let better = self.ranking(fitter).in_stead(&without, global, self.repaired.objective);
                 let Some((_, other)) = better.into_iter().next() else { continue };
                 if cost(&other) + 1.0 < cost(&self.repaired) {

@@ -48,6 +48,11 @@ pub fn diagnosis_file(diagnosis: &Diagnosis) -> Value {
         stopped: &diagnosis.stopped,
         contradictory: &diagnosis.contradictory,
         early_end: diagnosis.early_end,
+        sensors_taken_off: diagnosis
+            .sensors_off
+            .iter()
+            .map(|sensor| SensorOff { place: sensor.place.to_string(), mass: sensor.value(0) })
+            .collect(),
         drift: diagnosis.drift.as_ref().map(|drift| with_sentence(drift, drift.says())),
         modes: diagnosis.baseline.as_ref().map(|baseline| baseline.modes.as_slice()),
     })
@@ -87,12 +92,22 @@ struct DiagnosisFile<'a> {
     /// Where records ended, where the structure still rang.
     #[serde(skip_serializing_if = "Option::is_none")]
     early_end: Option<RecordEnd>,
+    /// Stated sensors whose mass was taken off the FRFs.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    sensors_taken_off: Vec<SensorOff>,
     /// How the structure changed from reference to reference.
     #[serde(skip_serializing_if = "Option::is_none")]
     drift: Option<Value>,
     /// The modes then and now, with a baseline.
     #[serde(skip_serializing_if = "Option::is_none")]
     modes: Option<&'a [ModeChange]>,
+}
+
+/// A sensor and its mass, kg.
+#[derive(Serialize)]
+struct SensorOff {
+    place: String,
+    mass: f64,
 }
 
 /// Error of the repaired model, and of the refitted one; zero where the noise explains what is left.

@@ -1,10 +1,19 @@
 //! The answer, whichever way it was found.
 
 use crate::{Error, HammerTest, MeasuredFrfs};
-use jointscope_diagnosis::{Diagnosis, as_known};
-use jointscope_fixture::Fixture;
+use jointscope_diagnosis::{Diagnosis, Fit, as_known};
+use jointscope_fixture::{Effect, Fixture, FixtureError};
 use jointscope_nonlinear::{NonlinearDiagnosis, SteppedDiagnosis};
 use jointscope_wording::Summary;
+
+/// The fixture with sensors that were taken off it for the diagnosis, where `stated` has them.
+fn with_sensors(fixture: Fixture, sensors: &[Effect], stated: &Fixture) -> Result<Fixture, FixtureError> {
+    let Some(first) = sensors.first() else { return Ok(fixture) };
+    let mut physics = fixture.physics().to_vec();
+    let place = stated.physics().iter().position(|own| own == first).unwrap_or(physics.len());
+    physics.splice(place..place, sensors.iter().cloned());
+    fixture.with_moved_physics(physics)
+}
 
 /// What a fixture leaves out of a test.
 #[derive(Debug, Clone)]
@@ -56,9 +65,13 @@ impl Answer {
         measured: MeasuredFrfs,
     ) -> Result<Self, Error> {
         let search = &diagnosis.search;
+        let whole = |of: &Fit| {
+            let found = with_sensors(of.hypothesis.to_fixture()?, &diagnosis.sensors_off, &fixture)?;
+            Ok::<Fixture, FixtureError>(as_known(found, &fixture))
+        };
         Ok(Answer {
-            refitted: as_known(search.refitted.hypothesis.to_fixture()?, &fixture),
-            repaired: as_known(search.repaired.hypothesis.to_fixture()?, &fixture),
+            refitted: whole(&search.refitted)?,
+            repaired: whole(&search.repaired)?,
             fixture,
             outcome: Outcome::Linear(Box::new(diagnosis)),
             homogeneity,

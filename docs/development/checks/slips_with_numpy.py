@@ -19,6 +19,7 @@ H1 and coherence of ten blows with 0.3 % noise, or hits over time. Kinds:
     moved   natural frequencies off by 0.3 %, shapes by 1 %; a sensor of 5 to 15 g that goes from response to response, or sits at one: its mass within a tenth, with 0.8
     changed such errors in both of two states, and a channel that is turned round or off by a tenth to a fifth in the second: that gain within half a per cent, with 0.9
     bench   natural frequencies off by 0.3 %, shapes of elastic modes by 1 %, structural damping, sensors 0.7 mm and impacts 1 mm beside their points: nothing, by itself `consistent`; the same since a baseline with other places; or 80 to 150 g on A: that alone, its mass within its interval
+    roved   the same as `bench`, with a sensor of 4 to 12 g that goes from response to response and is stated to 2 %
     ended   records of 0.4 s whose end comes while 3 to 20 % of a mode still rings, blows 10 ms after their begin and 0.5 to 1.1 ms long by point, FRFs of them: nothing, by itself `consistent`; the same since a baseline that began otherwise; or 20 to 60 g on A: that alone, with 0.9, its mass within its interval
     cut     the same as `ended`, but for errors as in `bench`, and 80 to 150 g: nothing, and that mass within its interval, with nothing else of 0.5
     warm    the same as `cut`, but for natural frequencies up to 0.03 % higher or lower, by reference, as the structure warms up and cools down
@@ -190,8 +191,8 @@ def case(kind, number, seed, program, folder):
         return column(random, program, folder)
     if kind == "second":
         return second(fixture, structure.truth, random, program, folder)
-    if kind in ("bench", "ended", "cut", "warm"):
-        way = {"bench": bench, "ended": ended, "cut": functools.partial(ended, errs=True), "warm": functools.partial(ended, errs=True, drifts=True)}[kind]
+    if kind in ("bench", "roved", "ended", "cut", "warm"):
+        way = {"bench": bench, "roved": functools.partial(bench, roves=True), "ended": ended, "cut": functools.partial(ended, errs=True), "warm": functools.partial(ended, errs=True, drifts=True)}[kind]
         return way(fixture, structure.truth, number, random, program, folder)
     if kind in ("moved", "changed", "foam"):
         return {"moved": moved, "changed": changed, "foam": foam}[kind](structure, number, random, program, folder)
@@ -259,10 +260,13 @@ def changed(structure, number, random, program, folder):
     return f"{answer['verdict']} {found}, factor {factor:.4f}", is_right
 
 
-def bench(fixture, truth, number, random, program, folder):
-    """Blocks as real ones are, struck as real ones are: nothing, nothing since a baseline, and a lump in turn."""
+def bench(fixture, truth, number, random, program, folder, roves=False):
+    """Blocks as real ones are, struck as real ones are: nothing, nothing since a baseline, and a lump in turn. Where it `roves`, with a sensor that loads them where it is."""
     for point in fixture["points"].values():
         point["x"] = point["x"]["value"]
+    sensor = float(random.uniform(0.004, 0.012)) if roves else 0.0
+    if roves:
+        fixture["physics"] = [{"kind": "sensor_mass", "place": "responses", "mass": {"value": sensor * (1 + 0.02 * float(random.standard_normal())), "std": 0.02 * sensor}}]
     (folder / "fixture.json").write_text(json.dumps(fixture))
     mass = float(random.uniform(0.08, 0.15)) if number % 3 == 2 else 0.0
     structure = Structure(truth, added=mass).erring(random)
@@ -272,10 +276,11 @@ def bench(fixture, truth, number, random, program, folder):
     for name in [name for name, is_made in names.items() if is_made]:
         sensors, impacts = ({point: 1e-3 * far * random.standard_normal() for point in truth["points"]} for far in (0.7, 1.0))
         s, exact = 2j * np.pi * LINES, {}
+        squares = structure.frequencies**2 * (1 + 2j * structure.ratios) * (structure.frequencies > 60)
         for response, reference in ALL:
-            residues = (structure.row(response, sensors[response]) @ structure.shapes) * (structure.row(reference, impacts[reference]) @ structure.shapes)
-            squares = structure.frequencies**2 * (1 + 2j * structure.ratios) * (structure.frequencies > 60)
-            exact[response, reference] = s**2 * sum(r / (s**2 + m) for r, m in zip(residues, squares))
+            read, struck = structure.row(response, sensors[response]) @ structure.shapes, structure.row(reference, impacts[reference]) @ structure.shapes
+            driven, own = (s**2 * sum(r / (s**2 + m) for r, m in zip(read * other, squares)) for other in (struck, read))
+            exact[response, reference] = driven / (1 + sensor * own)
         write_frfs(folder / name, exact, random)
     baseline = ["--baseline", "baseline.uff"] if names["baseline.uff"] else []
     answer = run(program, folder, "diagnose", "fixture.json", *baseline, "test.uff")
@@ -432,7 +437,7 @@ def main():
     parser.add_argument("program", type=lambda path: str(pathlib.Path(path).resolve()))
     parser.add_argument("--cases", type=int, default=7)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", nargs="*", default=["null", "hammer", "sensor", "losses", "record", "joint", "hits", "window", "column", "second", "moved", "changed", "bench", "ended", "cut", "warm", "foam"])
+    parser.add_argument("--only", nargs="*", default=["null", "hammer", "sensor", "losses", "record", "joint", "hits", "window", "column", "second", "moved", "changed", "bench", "roved", "ended", "cut", "warm", "foam"])
     parser.add_argument("--keep", type=pathlib.Path)
     arguments = parser.parse_args()
     is_right = True

@@ -14,13 +14,13 @@ use jointscope_findings::{Estimate, HeldOut, Verdict};
 impl MovedSensor {
     /// The sensor as a finding.
     fn finding(&self) -> Finding {
-        let mass = Estimate::of(self.effect.kind.spec().parameters[0], None, self.effect.value(0));
+        let mass = Estimate::of(self.effect().kind.spec().parameters[0], None, self.effect().value(0));
         Finding {
             estimates: vec![mass.within(self.deviation)],
             probability: self.probability,
             alternatives: self.alternatives.clone(),
             evidence: FrfEvidence { gain: self.gained, elsewhere: Vec::new(), measured: None },
-            effect: self.effect.clone(),
+            effect: self.effect().clone(),
         }
     }
 
@@ -32,7 +32,7 @@ impl MovedSensor {
         (refitted, without): (Search, Parts),
         division: Option<&Division>,
     ) -> Parts {
-        let with = |hypothesis: &Hypothesis| hypothesis.with(self.effect.clone());
+        let with = |hypothesis: &Hypothesis| hypothesis.with(self.effect().clone());
         let by_modes = fixture_by_modes(fitter, &refitted.nominal.hypothesis);
         let refitted = match &by_modes {
             Some((hypothesis, _)) => refitted.refitted_from(fitter, hypothesis),
@@ -74,11 +74,11 @@ impl MovedSensor {
 
     /// The fixture, and what was found with the sensor, fitted to what a fitter sees.
     fn blind(&self, fitter: &Fitter, search: &Search, without: &Search) -> Option<Search> {
-        let own = MovedSensor::of(fitter.observation, &self.model, &search.candidates)?;
-        let unloaded = own.taken_off(fitter.observation)?;
+        let own = MovedSensor::of(fitter.observation, &self.load.model, &search.candidates)?;
+        let unloaded = own.load.taken_off(fitter.observation)?;
         let refitted = fitter.local(&search.refitted.hypothesis, None, f64::INFINITY)?;
         let repaired = fitter.on(&unloaded).local(&without.repaired.hypothesis, None, f64::INFINITY)?;
-        let hypothesis = repaired.hypothesis.with(own.effect);
+        let hypothesis = repaired.hypothesis.with(own.effect().clone());
         Some(Search { refitted, repaired: Fit { hypothesis, ..repaired }, ..search.clone() })
     }
 }

@@ -18,6 +18,8 @@ pub(super) struct Seen {
     pub deviation: f64,
     /// Damping ratio as recorded less that of the model.
     pub damping: f64,
+    /// The damping ratio as recorded.
+    pub ratio: f64,
 }
 
 /// The FRFs of one response.
@@ -55,6 +57,7 @@ impl OfResponse {
                 difference: (own.omega / other.omega).ln(),
                 deviation: self.recorded.deviations(recorded)[0],
                 damping: own.damping_ratio - other.damping_ratio,
+                ratio: own.damping_ratio,
             }
         })
     }

@@ -1,8 +1,10 @@
-use super::MovedSensor;
+use super::{MovedSensor, WithoutSensors};
 use crate::candidate::Candidate;
 use crate::catalogue::catalogue;
+use crate::fitter::Fitter;
+use crate::settings::Settings;
 use crate::simulated::{observed, simulated};
-use crate::{Hypothesis, Observation};
+use crate::{Hypothesis, Observation, Watch};
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
@@ -50,9 +52,9 @@ fn frequencies_that_differ_by_response_tell_a_sensor_and_its_mass_whatever_the_m
     for place in [Place::Response("4".into()), Place::Responses] {
         for modulus in [2.07e11, 2.2e11] {
             let sensor = told(&recorded(modulus, &[(place.clone(), 6.0)])).unwrap();
-            assert_eq!(sensor.effect.place, place, "{modulus}");
+            assert_eq!(sensor.effect().place, place, "{modulus}");
             assert!(sensor.probability > 0.9, "{place:?} {modulus}: {}", sensor.probability);
-            assert!((sensor.effect.value(0) - 6e-3).abs() < 1.5 * sensor.deviation, "{modulus}");
+            assert!((sensor.effect().value(0) - 6e-3).abs() < 1.5 * sensor.deviation, "{modulus}");
             assert!(sensor.deviation < 4e-4, "{modulus}: {}", sensor.deviation);
         }
     }
@@ -80,7 +82,7 @@ fn frequencies_of_one_response_that_are_all_lower_alike_are_of_no_sensor() {
 #[test]
 fn a_sensor_that_is_taken_off_leaves_what_the_structure_does_without_it() {
     let observation = recorded(2.2e11, &[(Place::Response("4".into()), 6.0)]);
-    let unloaded = told(&observation).unwrap().taken_off(&observation).unwrap();
+    let unloaded = told(&observation).unwrap().load.taken_off(&observation).unwrap();
     let free = synthesize(&blocks(2.2e11), &pairs(), &lines(), Instrument::AsRecorded).unwrap();
     let missed = |of: &Observation| {
         let squares = |all: &mut dyn Iterator<Item = f64>| all.sum::<f64>();
@@ -96,7 +98,42 @@ fn a_sensor_that_is_taken_off_leaves_what_the_structure_does_without_it() {
 fn one_mode_alone_does_not_tell_a_sensor_from_a_warmer_day() {
     let whole = recorded(2.07e11, &[(Place::Response("4".into()), 6.0)]);
     let sensor = told(&whole.reduced(|hz| hz < 400.0, |_| true).unwrap()).unwrap();
-    assert_eq!(sensor.off.len(), 1, "modes in the band");
+    assert_eq!(sensor.load.off.len(), 1, "modes in the band");
     let any_place = sensor.probability + sensor.alternatives.iter().map(|(_, p)| p).sum::<f64>();
     assert!(any_place < 0.95, "{any_place}");
+}
+
+/// Root mean square of what two recordings differ by, over that of the second.
+fn apart(a: &Observation, b: &Observation) -> f64 {
+    let square = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>();
+    let difference = square(&mut a.values().iter().zip(b.values()).map(|(a, b)| (a - b).norm_sqr()));
+    (difference / square(&mut b.values().iter().map(|b| b.norm_sqr()))).sqrt()
+}
+
+#[test]
+fn stated_sensors_are_taken_off_a_recording_that_the_fixture_does_not_explain() {
+    let sensor = Effect::new(EffectKind::SensorMass, Place::Responses, None, &[6e-3]);
+    let window = Effect::new(EffectKind::ExponentialWindow, Place::All, None, &[4.0]);
+    for window in [vec![], vec![window]] {
+        let with_window =
+            |fixture: Fixture, sensors: &[Effect]| fixture.with_physics([sensors, &window].concat()).unwrap();
+        let recorded = |modulus: f64, sensors: &[Effect]| {
+            simulated(&with_window(blocks(modulus), sensors), &pairs(), &lines(), VARIANCE)
+        };
+        let stated = Hypothesis::nominal(&with_window(blocks(2.07e11), &[sensor.clone()]), false);
+        let settings = Settings::default();
+        let without = |observation: &Observation| {
+            let fitter = Fitter { observation, settings: &settings, watch: Watch::default() };
+            WithoutSensors::of(&fitter, &stated, true)
+        };
+        assert!(without(&recorded(2.07e11, &[sensor.clone()])).is_none(), "lines do not mind");
+        assert!(without(&recorded(2.5e11, &[])).is_none(), "nothing was moved");
+        let loaded = recorded(2.5e11, &[sensor.clone()]);
+        let (found, unloaded) = without(&loaded).unwrap();
+        assert_eq!(found.sensors(), [sensor.clone()]);
+        assert_eq!(found.nominal.fixture().physics(), window);
+        let truth = recorded(2.5e11, &[]);
+        let (before, after) = (apart(&loaded, &truth), apart(&unloaded, &truth));
+        assert!(before > 0.1 && after < 0.01 * before, "{before} {after}");
+    }
 }

@@ -5,18 +5,19 @@
 //! Σ (ln ω − c − s)²/(σ² + (ε·s)²), has a χ² distribution; ε is what the model's shapes make s uncertain by.
 
 use super::by_response::{OfResponse, Seen, by_response, loads};
+use super::unloaded::{Load, Share};
 use crate::candidate::Candidate;
 use crate::settings::moved_sensor::{
-    EXPLAINED, FACTOR_ROUNDS, GAINED, MOST, OTHERWISE, REPEATS, SHAPES, STEPS,
+    EXPLAINED, FACTOR_ROUNDS, GAINED, MOST, OTHERWISE, REPEATS, SHAPES, STATED_LEFT, STEPS,
 };
 use crate::{Hypothesis, Observation};
-use jointscope_fixture::{Effect, EffectKind, Place};
+use jointscope_fixture::{Effect, EffectKind};
 
 /// What a sensor's mass makes of a recording's modes.
 #[derive(Debug, Clone)]
 pub(crate) struct MovedSensor {
-    /// Where it sits, and its mass.
-    pub(crate) effect: Effect,
+    /// Where it sits, and its mass, and the structure without it.
+    pub(crate) load: Load,
     /// Standard deviation of the mass, kg.
     pub(super) deviation: f64,
     pub(super) probability: f64,
@@ -24,11 +25,13 @@ pub(crate) struct MovedSensor {
     pub(super) alternatives: Vec<(Effect, f64)>,
     /// What χ² of the natural frequencies loses for it.
     pub(super) gained: f64,
-    /// The structure without it.
-    pub(super) model: Hypothesis,
-    /// Of each mode: natural frequency of the model, rad/s, ln ω of the structure without the sensor less
-    /// that, and the difference of the damping ratios.
-    pub(super) off: Vec<[f64; 3]>,
+}
+
+impl MovedSensor {
+    /// Where it sits, and its mass.
+    pub(crate) fn effect(&self) -> &Effect {
+        &self.load.sensors[0]
+    }
 }
 
 /// One mode in one response: what is seen, and what a hypothesis makes of it.
@@ -41,6 +44,18 @@ struct Datum {
 impl Datum {
     fn weight(&self) -> f64 {
         (self.seen.deviation.powi(2) + REPEATS.powi(2) + (SHAPES * self.shift).powi(2)).recip()
+    }
+}
+
+impl Datum {
+    /// The share of the sensor's load by the model that it is, if the structure's own ln ω is so far from the
+    /// model's, and its deviation. As far as the shape there may be off, the pole tells.
+    fn share(&self, frequency: f64) -> [f64; 2] {
+        let (noise, off) = (self.seen.deviation.powi(2) + REPEATS.powi(2), (SHAPES * self.shift).powi(2));
+        let told = off / (off + noise);
+        let share = 1.0 + told * (self.seen.difference - self.shift - frequency) / self.shift;
+        let std = (told * noise).sqrt() / self.shift.abs();
+        if share.is_finite() && std.is_finite() { [share, std] } else { [1.0, SHAPES] }
     }
 }
 
@@ -62,6 +77,26 @@ fn product(data: &[Datum], modes: usize, a: impl Fn(&Datum) -> f64, b: impl Fn(&
     data.iter().map(of).sum()
 }
 
+impl Load {
+    /// Of sensors of which the `responses` show these `data`, of modes with these natural frequencies.
+    fn of(sensors: Vec<Effect>, responses: &Responses, data: &[Datum], omegas: &[f64]) -> Self {
+        let frequency = means(data, omegas.len(), |d| d.seen.difference - d.shift);
+        let damping = means(data, omegas.len(), |d| d.seen.damping);
+        let mut data = data.iter();
+        let of_response = |own: &OfResponse| {
+            let shown = data.by_ref().take(own.seen().count());
+            let of_mode = |d: &Datum| {
+                let mode = d.seen.mode;
+                Share::of(omegas[mode].ln() + frequency[mode], d.share(frequency[mode]), d.seen.ratio)
+            };
+            (own.response.clone(), shown.map(of_mode).collect())
+        };
+        let shares = responses.all.iter().map(of_response).collect();
+        let off = omegas.iter().zip(frequency.iter().zip(&damping)).map(|(omega, (c, d))| [*omega, *c, *d]);
+        Load { sensors, model: responses.model.clone(), off: off.collect(), shares }
+    }
+}
+
 /// A hypothesis with the mass that suits it best.
 struct Fitted {
     effect: Effect,
@@ -81,13 +116,13 @@ struct Responses<'a> {
 }
 
 impl Responses<'_> {
-    /// What a sensor of this mass makes of all modes; `None` where they cannot be followed.
-    fn data(&self, place: &Place, mass: f64) -> Option<Vec<Datum>> {
-        let sensor = Effect::new(EffectKind::SensorMass, place.clone(), None, &[mass]);
-        let fixture = self.model.with(sensor).to_fixture().ok()?;
+    /// What sensors make of all modes; `None` where these cannot be followed.
+    fn data(&self, sensors: &[Effect]) -> Option<Vec<Datum>> {
+        let loaded = sensors.iter().fold(self.model.clone(), |model, sensor| model.with(sensor.clone()));
+        let fixture = loaded.to_fixture().ok()?;
         let mut data = Vec::new();
         for own in self.all {
-            let shifts = match loads(place, &own.response) {
+            let shifts = match sensors.iter().any(|sensor| loads(&sensor.place, &own.response)) {
                 true => own.shifts(&fixture)?,
                 false => vec![0.0; own.seen().count()],
             };
@@ -98,14 +133,14 @@ impl Responses<'_> {
 
     /// The mass of a name that makes the differences between responses; `None` where none does.
     fn fitted(&self, name: &Candidate) -> Option<Fitted> {
-        let place = &name.place;
+        let sensor = |mass| Effect::new(EffectKind::SensorMass, name.place.clone(), None, &[mass]);
         let starts = || name.starts.iter().map(|start| start[0]);
         let mut mass = starts().reduce(f64::min)?;
         let most = MOST * starts().reduce(f64::max)?;
         let shift = |d: &Datum| d.shift;
         let difference = |d: &Datum| d.seen.difference;
         for _ in 0..STEPS {
-            let data = self.data(place, mass)?;
+            let data = self.data(&[sensor(mass)])?;
             let information = product(&data, self.modes, shift, shift);
             let times = product(&data, self.modes, shift, difference) / information;
             if !(times.is_finite() && times > 0.0 && times * mass < most) {
@@ -113,10 +148,10 @@ impl Responses<'_> {
             }
             mass *= times;
         }
-        let data = self.data(place, mass)?;
+        let data = self.data(&[sensor(mass)])?;
         let left = |d: &Datum| d.seen.difference - d.shift;
         Some(Fitted {
-            effect: Effect::new(EffectKind::SensorMass, place.clone(), None, &[mass]),
+            effect: sensor(mass),
             information: product(&data, self.modes, shift, shift),
             chi2: product(&data, self.modes, left, left),
             without: product(&data, self.modes, difference, difference),
@@ -180,17 +215,27 @@ impl MovedSensor {
         }
         let named = |fit: &Fitted| (fit.effect.clone(), weight(fit.chi2) / (sensors + unlisted + alike));
         let (effect, probability) = named(best);
-        let frequency = means(&best.data, omegas.len(), |d| d.seen.difference - d.shift);
-        let damping = means(&best.data, omegas.len(), |d| d.seen.damping);
-        let off = omegas.iter().zip(frequency).zip(damping).map(|((omega, c), d)| [*omega, c, d]);
         Some(MovedSensor {
             deviation: effect.value(0) * (inflation / best.information).sqrt(),
             alternatives: fits[1..].iter().map(named).filter(|(_, p)| *p > unlisted).collect(),
-            off: off.collect(),
-            model: model.clone(),
+            load: Load::of(vec![effect], &responses, &best.data, &omegas),
             gained,
-            effect,
             probability,
         })
+    }
+}
+
+impl Load {
+    /// Sensors that a fixture states, where natural frequencies differ from response to response as these make
+    /// them differ; `model` is the structure without them.
+    pub(crate) fn stated(observation: &Observation, model: &Hypothesis, sensors: &[Effect]) -> Option<Self> {
+        let (all, omegas) = by_response(observation, model)?;
+        let responses = Responses { model, all: &all, modes: omegas.len() };
+        let data = responses.data(sensors)?;
+        let chi2 = |of: &dyn Fn(&Datum) -> f64| product(&data, omegas.len(), of, of);
+        let (without, left) = (chi2(&|d| d.seen.difference), chi2(&|d| d.seen.difference - d.shift));
+        // It is known to be there; what else is left out may change the shapes by which it is judged.
+        let is_seen = without - left >= GAINED && left <= STATED_LEFT * without;
+        is_seen.then(|| Load::of(sensors.to_vec(), &responses, &data, &omegas))
     }
 }

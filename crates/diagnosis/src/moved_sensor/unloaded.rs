@@ -3,12 +3,15 @@
 //! Where a sensor of mass m sits at the response, the recorded accelerance is H/(1 + m·A), A being the
 //! structure's own accelerance at that point. A is the model's with its poles where the recording has them:
 //! at s = iω it is taken at iω·ω_m/ω_r + (ζ_r − ζ_m)·ω_m, which is as far from the model's pole (m) as s is
-//! from the recorded one (r), in units of either's frequency; between modes both go on smoothly.
+//! from the recorded one (r), in units of either's frequency; between modes both go on smoothly. The model's
+//! shapes are a little wrong at the sensor, so A counts as much as the recorded pole is lower there than the
+//! structure's: else a pole would be left beside it. Under an
+//! exponential window FRFs are taken at s = decay + iω, A too.
 
 use super::by_response::loads;
-use super::told::MovedSensor;
-use crate::Observation;
-use jointscope_lumped::{Instrument, ModelledTest};
+use crate::{Hypothesis, Observation};
+use jointscope_fixture::Effect;
+use jointscope_lumped::{Instrument, ModelledTest, window_decay};
 use jointscope_spectra::{Channel, FrfPair};
 use num_complex::Complex64;
 
@@ -22,13 +25,48 @@ fn between(known: &[(f64, f64)], at: f64) -> f64 {
     }
 }
 
-impl MovedSensor {
+/// What sensors do to a mode at one response, beside what they do to it by the model's shape there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Share {
+    /// ln ω of the mode without the sensors.
+    ln_omega: f64,
+    /// The share of that which they do.
+    share: f64,
+    /// Its standard deviation.
+    std: f64,
+    /// Half-power bandwidth of the mode, rad/s.
+    width: f64,
+}
+
+impl Share {
+    /// Of a mode with this ln ω and damping ratio.
+    pub(super) fn of(ln_omega: f64, [share, std]: [f64; 2], ratio: f64) -> Self {
+        Share { ln_omega, share, std, width: 2.0 * ratio * ln_omega.exp() }
+    }
+}
+
+/// Sensors that load a structure while it is recorded, and how it moves without them.
+#[derive(Debug, Clone)]
+pub(crate) struct Load {
+    /// The sensors: where they sit, and their masses.
+    pub(crate) sensors: Vec<Effect>,
+    /// The structure without them.
+    pub(super) model: Hypothesis,
+    /// Of each mode: natural frequency of the model, rad/s, ln ω of the structure without the sensors less
+    /// that, and the difference of the damping ratios.
+    pub(super) off: Vec<[f64; 3]>,
+    /// Of each response, mode by mode: the share of what the sensors do by the model's shape there that they do.
+    pub(super) shares: Vec<(Channel, Vec<Share>)>,
+}
+
+impl Load {
     /// The accelerance of the structure where a response is read, on all lines.
     fn accelerance(&self, observation: &Observation, response: &Channel) -> Option<Vec<Complex64>> {
         let hz = observation.lines().hz();
         let driven = FrfPair::new(response.clone(), response.clone());
         let fixture = self.model.to_fixture().ok()?;
         let test = ModelledTest::new(&fixture, &[driven], *hz.last()?, Instrument::Perfect).ok()?;
+        let window = window_decay(&fixture);
         let mut frfs = test.continued();
         let mut off = self.off.clone();
         off.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -39,23 +77,53 @@ impl MovedSensor {
         let mut value = [Complex64::ZERO];
         let mut at = |omega: f64| {
             let own = omega * (-between(&frequency, omega.ln())).exp();
-            let s = Complex64::new(between(&damping, omega.ln()) * own, own);
+            let s = Complex64::new(window + between(&damping, omega.ln()) * own, own);
             frfs.at(s, &mut value).then_some(value[0])
         };
         observation.lines().omegas().map(&mut at).collect()
     }
 
-    /// The recording as it would be without the sensor; `None` where the model has no finite FRFs.
+    /// What is known of the shares of a response, by ln ω.
+    fn along(&self, response: &Channel, of: fn(&Share) -> f64) -> Vec<(f64, f64)> {
+        let own = self.shares.iter().find(|(other, _)| other == response);
+        let mut known: Vec<(f64, f64)> = own
+            .map(|(_, modes)| modes.iter().map(|own| (own.ln_omega, of(own))).collect())
+            .unwrap_or_default();
+        known.sort_by(|a, b| a.0.total_cmp(&b.0));
+        known
+    }
+
+    /// The recording as it would be without the sensors; `None` where the model has no finite FRFs.
+    ///
+    /// What the shares are not known to is in all lines of a resonance and in all FRFs of a response alike: as
+    /// noise of each value by itself it counts so many times more.
     pub(crate) fn taken_off(&self, observation: &Observation) -> Option<Observation> {
-        let mass = self.effect.value(0);
-        let mut factors = Vec::with_capacity(observation.values().len());
-        for pair in observation.pairs() {
-            match loads(&self.effect.place, &pair.response) {
-                true => factors
-                    .extend(self.accelerance(observation, &pair.response)?.iter().map(|a| 1.0 + mass * a)),
-                false => factors.extend(vec![Complex64::ONE; observation.lines().len()]),
+        let lines = observation.lines();
+        let spacing = lines.omegas().nth(1)? - lines.omegas().next()?;
+        let mut factors = vec![Complex64::ONE; observation.values().len()];
+        let mut variances = vec![0.0; factors.len()];
+        for (frf, pair) in observation.pairs().iter().enumerate() {
+            let response = &pair.response;
+            let own = self.sensors.iter().filter(|sensor| loads(&sensor.place, response));
+            let mass: f64 = own.map(|sensor| sensor.value(0)).sum();
+            if mass == 0.0 {
+                continue;
+            }
+            let shares = self.along(response, |own| own.share);
+            let deviations = self.along(response, |own| own.std);
+            let widths = self.along(response, |own| own.width);
+            let alike = observation.pairs().iter().filter(|other| other.response == *response).count();
+            let accelerances = self.accelerance(observation, response)?;
+            for ((line, accelerance), omega) in accelerances.iter().enumerate().zip(lines.omegas()) {
+                let (at, ln_omega) = (frf * lines.len() + line, omega.ln());
+                let load = mass * accelerance;
+                let [share, std, width] =
+                    [&shares, &deviations, &widths].map(|known| between(known, ln_omega));
+                factors[at] += share * load;
+                let times = (width / spacing).max(1.0) * alike as f64;
+                variances[at] = times * (std * load * observation.values()[at]).norm_sqr();
             }
         }
-        observation.times(&factors)
+        Some(observation.times(&factors)?.with_variance_added(&variances))
     }
 }

@@ -17,6 +17,11 @@ pub(crate) const REPEATS: f64 = 2e-5;
 /// Standard deviation of what a mass does to a mode, relative: squares of shapes at the sensor are known to
 /// a few per cent where the model is a little wrong.
 pub(crate) const SHAPES: f64 = 0.05;
+/// Relative deviation up to which a stated sensor's mass is taken as it is: what it is off by moves natural
+/// frequencies a tenth as much as the sensor does.
+pub(crate) const STATED_WELL: f64 = 0.1;
+/// Share of χ² that stated sensors may leave.
+pub(crate) const STATED_LEFT: f64 = 0.5;
 /// What χ² must lose for it: 5 standard deviations.
 pub(crate) const GAINED: f64 = 25.0;
 /// Share of χ² that may be left where that is more than noise. A free fit to few lines errs by more than its

@@ -21,5 +21,6 @@ mod real_beam;
 mod record_end;
 mod slips;
 mod stated;
+mod stated_sensors;
 mod where_along;
 mod wrong_quantities;

@@ -1,5 +1,6 @@
 //! What to know besides of a diagnosis: what the test was like, and what follows for how sure it is.
 
+use crate::effects::effect_name;
 use crate::finding::with_fitted_size;
 use crate::numbers::{listed, significant};
 use crate::{Remarks, Says};
@@ -13,6 +14,7 @@ impl Remarks for Diagnosis {
         remarks.extend(only_one_frf(self));
         remarks.extend(of_noise(&self.observation));
         remarks.extend(lines_left_out(self));
+        remarks.extend(sensors_off(self));
         remarks.extend(self.early_end.map(|end| end.says()));
         remarks.extend(self.drift.as_ref().filter(|drift| drift.taken_out).map(Says::says));
         remarks.extend(falls_short(self));
@@ -33,6 +35,22 @@ fn only_one_frf(diagnosis: &Diagnosis) -> Option<String> {
          something sits, for one free value a line at any place explains one FRF, and nothing can be held out. Record at least \
          one more response or reference point."
     ))
+}
+
+/// Stated sensors that were taken off the FRFs.
+fn sensors_off(diagnosis: &Diagnosis) -> Option<String> {
+    let sensors: Vec<String> = diagnosis
+        .sensors_off
+        .iter()
+        .map(|sensor| format!("{} ({} g)", effect_name(sensor), significant(1e3 * sensor.value(0), 3)))
+        .collect();
+    (!sensors.is_empty()).then(|| {
+        format!(
+            "Natural frequencies differ from response to response as the stated {} makes them differ, which moves with the sensor: it was taken off the FRFs, and what follows is \
+             of the structure without it.",
+            listed(&sensors)
+        )
+    })
 }
 
 /// Lines that contradict all others.
