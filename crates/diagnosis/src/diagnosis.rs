@@ -132,7 +132,7 @@ impl Diagnosis {
                 let baseline = usable.part_of_baseline(baseline)?;
                 changed_since(&fitter, &observation, baseline, (fixture, options.exact))?
             }
-            None => routes::judged(&fitter, fixture, options)?,
+            None => routes::judged(&fitter, fixture, options, usable.sensors_off().is_empty())?,
         };
         if few.is_some() {
             parts = parts.on_all(&fitter.on(&observation));

@@ -50,6 +50,9 @@ impl Ground {
     /// The diagnosis of a structure that no sensor loads in some FRFs only.
     fn decided(&self, given: Given) -> Parts {
         let modal = self.modal.as_ref();
+        if let Some(modal) = modal.filter(|_| !given.lines_decide) {
+            return by_modes(given, &self.without_effects, modal);
+        }
         let parts = routed(given, &self.without_effects, modal);
         if let Some(wrong) = explained_by_wrong_quantity(given, &self.without_effects, &parts) {
             return wrong;
@@ -61,14 +64,16 @@ impl Ground {
     }
 }
 
-/// The diagnosis by the route that fits the recording.
+/// The diagnosis by the route that fits the recording, where `lines_decide` if they explain it.
 pub(crate) fn judged(
     fitter: &Fitter,
     fixture: &Fixture,
     options: &DiagnosisOptions,
+    lines_decide: bool,
 ) -> Result<Parts, DiagnosisError> {
     let division = Division::of(fitter.observation, options)?;
-    let given = Given { fitter, fixture, exact: options.exact, division: division.as_ref() };
+    let exact = options.exact;
+    let given = Given { fitter, fixture, exact, lines_decide, division: division.as_ref() };
     let refitted = refitted(given)?;
     if let Some(found) = refitted.explained_by_odd_record(fitter) {
         return Ok(from_found(given, refitted, found, None));
@@ -80,7 +85,7 @@ pub(crate) fn judged(
     }
     let ground = Ground::of(given, refitted);
     let Ground { without_effects, modal } = &ground;
-    let moved = modal.as_ref().filter(|modal| modal.is_unexplained());
+    let moved = modal.as_ref().filter(|modal| lines_decide && modal.is_unexplained());
     if let Some(found) = moved.and_then(|_| without_effects.explained_by_moved_sensor(fitter, None)) {
         return Ok(from_found(given, ground.without_effects, found, None));
     }
@@ -111,12 +116,13 @@ fn beside_sensor(
     as_loaded: Search,
     (sensor, unloaded): (&MovedSensor, &Observation),
 ) -> Result<Parts, DiagnosisError> {
-    let Given { fitter, fixture, exact, .. } = given;
+    let Given { fitter, fixture, exact, lines_decide, .. } = given;
     if let Some(found) = as_loaded.explained_by_moved_sensor(fitter, Some(sensor.effect())) {
         return Ok(from_found(given, as_loaded, found, None));
     }
     let division = Division::of(unloaded, options)?;
-    let without = Given { fitter: &fitter.on(unloaded), fixture, exact, division: division.as_ref() };
+    let without =
+        Given { fitter: &fitter.on(unloaded), fixture, exact, lines_decide, division: division.as_ref() };
     let without = Ground::of(without, refitted(without)?).decided(without);
     // What leaves little of the lines beside it is for them to find.
     let both = without.search.repaired.hypothesis.with(sensor.effect().clone());
@@ -285,7 +291,8 @@ pub(crate) fn since(
         ModalJudgement::since(fitter, &baseline, &as_stated.nominal.hypothesis, &as_stated.candidates);
     let (modal, before) = judged.ok_or(DiagnosisError::Baseline)?;
     let calibrated = Fit::at(before.calibrated, &baseline).ok_or(DiagnosisError::Baseline)?;
-    let parts = by_modes(Given { fitter, fixture, exact, division: None }, &as_stated, &modal);
+    let parts =
+        by_modes(Given { fitter, fixture, exact, lines_decide: false, division: None }, &as_stated, &modal);
     let baseline = Baseline { observation: baseline, calibrated, modes: before.modes };
     Ok(Parts { baseline_error: Some(before.error), baseline: Some(baseline), ..parts })
 }

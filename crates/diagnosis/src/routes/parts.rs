@@ -20,6 +20,9 @@ pub(super) struct Given<'a> {
     pub fixture: &'a Fixture,
     /// Whether the fixture's bare numbers are exact.
     pub exact: bool,
+    /// Whether lines may decide: not where the recording was made one of the structure without its sensors, which
+    /// leaves lines less than their noise says.
+    pub lines_decide: bool,
     /// What is held out, where anything is.
     pub division: Option<&'a Division>,
 }

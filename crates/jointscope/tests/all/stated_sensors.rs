@@ -27,6 +27,7 @@ fn it_is_taken_off_for_the_diagnosis_and_is_in_the_fixtures_that_come_of_it() {
     assert_eq!(diagnosis.sensors_off, [sensor.clone()]);
     let [found] = &diagnosis.findings[..] else { panic!("{:?}", diagnosis.findings) };
     assert!(found.effect.is_named_as(&compliance), "{:?}", found.effect);
+    assert!(diagnosis.model_error.is_some(), "modes decide, lines that a sensor was taken off do not");
     for (fixture, effects) in [(&answer.refitted, 1), (&answer.repaired, 2)] {
         assert_eq!((&fixture.physics()[0], fixture.physics().len()), (&sensor, effects));
     }
