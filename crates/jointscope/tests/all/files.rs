@@ -226,3 +226,34 @@ fn imports_are_read_as_the_compiler_reads_them() {
     let tests = "fn a() {}\n// crate::b\n#[cfg(test)]\n#[allow(x)]\nmod tests {\n use super::*; }\nfn c() {}";
     assert_eq!(code(tests), "fn a() {}\n\nfn c() {}");
 }
+
+/// Every Rust file below a folder.
+fn sources(folder: &Path) -> Vec<std::path::PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    entries
+        .flat_map(|path| match path.is_dir() {
+            true => sources(&path),
+            false => vec![path],
+        })
+        .filter(|path| path.extension().is_some_and(|extension| extension == "rs"))
+        .collect()
+}
+
+#[test]
+fn a_crate_whose_sources_hold_tests_runs_them() {
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut untested = 0;
+    for entry in std::fs::read_dir(crates).unwrap() {
+        let folder = entry.unwrap().path();
+        let manifest = std::fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+        if !manifest.lines().any(|line| line.trim() == "test = false") {
+            continue;
+        }
+        untested += 1;
+        for source in sources(&folder.join("src")) {
+            let text = std::fs::read_to_string(&source).unwrap();
+            assert!(!text.contains("#[test]"), "{} holds tests that never run", source.display());
+        }
+    }
+    assert!(untested > 0, "manifests say it otherwise now");
+}
