@@ -1,7 +1,7 @@
 //! A parameter of what was found, with deviation and interval; of a vague one only the order of magnitude is
 //! known.
 
-use jointscope_fixture::{Dof, ParameterRange, ParameterSpec};
+use jointscope_fixture::{Dof, Motion, ParameterRange, ParameterSpec};
 use jointscope_inference::{Z95, interval95};
 use serde::Serialize;
 
@@ -39,9 +39,16 @@ impl Estimate {
     }
 
     /// The same known to ± `std`, its errors normal; the interval holds none but possible values: of a
-    /// dashpot that may be none it begins at zero.
+    /// dashpot that may be none it begins at zero. What tells a height across a body is its square, whose errors
+    /// are normal.
     pub fn within(self, std: f64) -> Self {
         let [low, high] = interval95(self.value, std);
+        let low = match self.parameter.motion {
+            Motion::AcrossBody => {
+                (self.value * self.value - 2.0 * Z95 * self.value.abs() * std).max(0.0).sqrt()
+            }
+            _ => low,
+        };
         Estimate { std: Some(std), interval: Some([low.max(self.least()), high]), ..self }
     }
 
@@ -93,6 +100,19 @@ mod tests {
         assert_eq!(of(EffectKind::InterfaceCompliance, "damping"), Some([0.0, upper]));
         assert_eq!(of(EffectKind::AttachedResonator, "damping_ratio"), Some([0.0, upper]));
         assert_eq!(of(EffectKind::PointOffset, "dx"), Some([0.002 - Z95 * 0.01, upper]));
+    }
+
+    #[test]
+    fn a_height_of_three_deviations_may_be_none() {
+        let parameters = EffectKind::AddedMass.spec().parameters;
+        let height = parameters.iter().find(|p| p.name == "height").copied().expect("it has one");
+        let low =
+            |value: f64, std: f64| Estimate::of(height, None, value).within(std).interval.map(|[low, _]| low);
+        // h² = 346 ± 186 mm².
+        assert_eq!(low(0.0186, 0.005), Some(0.0));
+        // h² = 400 ± 40 mm².
+        let expected = (400e-6 - Z95 * 40e-6).sqrt();
+        assert!(low(0.02, 0.001).is_some_and(|low| (low - expected).abs() < 1e-9));
     }
 
     #[test]
