@@ -120,17 +120,17 @@ fn stated_sensors_are_taken_off_a_recording_that_the_fixture_does_not_explain() 
         let recorded = |modulus: f64, sensors: &[Effect]| {
             simulated(&with_window(blocks(modulus), sensors), &pairs(), &lines(), VARIANCE)
         };
-        let stated = Hypothesis::nominal(&with_window(blocks(2.07e11), &[sensor.clone()]), false);
+        let stated = Hypothesis::nominal(&with_window(blocks(2.07e11), std::slice::from_ref(&sensor)), false);
         let settings = Settings::default();
         let without = |observation: &Observation| {
             let fitter = Fitter { observation, settings: &settings, watch: Watch::default() };
             WithoutSensors::of(&fitter, &stated, true)
         };
-        assert!(without(&recorded(2.07e11, &[sensor.clone()])).is_none(), "lines do not mind");
+        assert!(without(&recorded(2.07e11, std::slice::from_ref(&sensor))).is_none(), "lines do not mind");
         assert!(without(&recorded(2.5e11, &[])).is_none(), "nothing was moved");
-        let loaded = recorded(2.5e11, &[sensor.clone()]);
+        let loaded = recorded(2.5e11, std::slice::from_ref(&sensor));
         let (found, unloaded) = without(&loaded).unwrap();
-        assert_eq!(found.sensors(), [sensor.clone()]);
+        assert_eq!(found.sensors(), std::slice::from_ref(&sensor));
         assert_eq!(found.nominal.fixture().physics(), window);
         let truth = recorded(2.5e11, &[]);
         let (before, after) = (apart(&loaded, &truth), apart(&unloaded, &truth));
