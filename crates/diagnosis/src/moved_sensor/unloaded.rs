@@ -5,10 +5,11 @@
 //! at s = iω it is taken at iω·ω_m/ω_r + (ζ_r − ζ_m)·ω_m, which is as far from the model's pole (m) as s is
 //! from the recorded one (r), in units of either's frequency; between modes both go on smoothly. The model's
 //! shapes are a little wrong at the sensor, so A counts as much as the recorded pole is lower there than the
-//! structure's: else a pole would be left beside it. Under an
-//! exponential window FRFs are taken at s = decay + iω, A too.
+//! structure's: else a pole would be left beside it. Under an exponential window FRFs are taken at s = decay + iω,
+//! A too.
 
 use super::by_response::loads;
+use crate::settings::moved_sensor::SHAPES;
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::Effect;
 use jointscope_lumped::{Instrument, ModelledTest, window_decay};
@@ -39,6 +40,9 @@ pub(super) struct Share {
 }
 
 impl Share {
+    /// Where no mode tells.
+    const OF_MODEL: Share = Share { ln_omega: 0.0, share: 1.0, std: SHAPES, width: 0.0 };
+
     /// Of a mode with this ln ω and damping ratio.
     pub(super) fn of(ln_omega: f64, [share, std]: [f64; 2], ratio: f64) -> Self {
         Share { ln_omega, share, std, width: 2.0 * ratio * ln_omega.exp() }
@@ -83,12 +87,11 @@ impl Load {
         observation.lines().omegas().map(&mut at).collect()
     }
 
-    /// What is known of the shares of a response, by ln ω.
+    /// What is known of the shares of a response, by ln ω; of one that shows no mode, what the model says.
     fn along(&self, response: &Channel, of: fn(&Share) -> f64) -> Vec<(f64, f64)> {
-        let own = self.shares.iter().find(|(other, _)| other == response);
-        let mut known: Vec<(f64, f64)> = own
-            .map(|(_, modes)| modes.iter().map(|own| (own.ln_omega, of(own))).collect())
-            .unwrap_or_default();
+        let own = self.shares.iter().find(|(other, modes)| other == response && !modes.is_empty());
+        let modes = own.map_or(&[Share::OF_MODEL][..], |(_, modes)| modes);
+        let mut known: Vec<(f64, f64)> = modes.iter().map(|own| (own.ln_omega, of(own))).collect();
         known.sort_by(|a, b| a.0.total_cmp(&b.0));
         known
     }
