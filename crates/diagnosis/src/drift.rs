@@ -29,3 +29,4 @@ mod table;
 
 pub use attribution::{ModeDrift, ReferenceChange, TestDrift};
 pub(crate) use drifted::Drifted;
+pub(crate) use poles_by_frf::distinct;

@@ -1,6 +1,7 @@
 //! FRFs of records that ended while the structure still rang.
 
 use crate::Observation;
+use crate::drift::distinct;
 use crate::modal::modes_options;
 use crate::recorded_lines::is_short;
 use jointscope_fixture::Fixture;
@@ -59,9 +60,7 @@ fn without_ends(
     fixture: &Fixture,
     channel: impl Fn(&FrfPair) -> &Channel,
 ) -> Option<(Observation, RecordEnd)> {
-    let mut channels: Vec<&Channel> = observation.pairs().iter().map(&channel).collect();
-    channels.sort();
-    channels.dedup();
+    let channels = distinct(observation.pairs().iter().map(&channel));
     let count = channels.len() as f64;
     if channels.len() < 2 {
         return None;
@@ -69,12 +68,12 @@ fn without_ends(
     let mut mean = RecordEnd { after: 0.0, left: 0.0 };
     let n = observation.lines().len();
     let mut missing = vec![Complex64::ZERO; observation.values().len()];
-    for own_channel in channels {
-        let part = observation.reduced(|_| true, |pair| channel(pair) == own_channel)?;
+    for shared in &channels {
+        let part = observation.reduced(|_| true, |pair| channel(pair) == shared)?;
         let (end, own) = RecordEnd::of(part.weighted(), &modes_options(&part, fixture))?;
         mean.after += end.after / count;
         mean.left += end.left / count;
-        let frfs = observation.pairs().iter().enumerate().filter(|(_, pair)| channel(pair) == own_channel);
+        let frfs = observation.pairs().iter().enumerate().filter(|(_, pair)| channel(pair) == shared);
         for ((frf, _), own) in frfs.zip(own.chunks_exact(n)) {
             missing[frf * n..][..n].copy_from_slice(own);
         }

@@ -116,13 +116,12 @@ fn beside_sensor(
     as_loaded: Search,
     (sensor, unloaded): (&MovedSensor, &Observation),
 ) -> Result<Parts, DiagnosisError> {
-    let Given { fitter, fixture, exact, lines_decide, .. } = given;
+    let fitter = given.fitter;
     if let Some(found) = as_loaded.explained_by_moved_sensor(fitter, Some(sensor.effect())) {
         return Ok(from_found(given, as_loaded, found, None));
     }
     let division = Division::of(unloaded, options)?;
-    let without =
-        Given { fitter: &fitter.on(unloaded), fixture, exact, lines_decide, division: division.as_ref() };
+    let without = Given { fitter: &fitter.on(unloaded), division: division.as_ref(), ..given };
     let without = Ground::of(without, refitted(without)?).decided(without);
     // What leaves little of the lines beside it is for them to find.
     let both = without.search.repaired.hypothesis.with(sensor.effect().clone());

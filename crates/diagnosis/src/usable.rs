@@ -16,7 +16,8 @@ use std::sync::Arc;
 /// What of a recording a diagnosis rests on.
 pub(crate) struct Usable<'a> {
     pub options: &'a DiagnosisOptions,
-    nominal: &'a Hypothesis,
+    /// What the observation is held against: the fixture, without the sensors that were taken off.
+    nominal: Hypothesis,
     /// The stated sensors whose mass is taken off the FRFs, where that is needed.
     without_sensors: Option<WithoutSensors>,
     /// Bands, Hz, of lines that contradict all others.
@@ -35,7 +36,7 @@ impl<'a> Usable<'a> {
     pub(crate) fn of(
         frfs: &FrfSet,
         options: &'a DiagnosisOptions,
-        nominal: &'a Hypothesis,
+        nominal: &Hypothesis,
         work: Arc<Work>,
     ) -> Result<(Self, Observation), DiagnosisError> {
         let (observation, contradictory) = without_contradictory(frfs, options, nominal, work)?;
@@ -45,26 +46,21 @@ impl<'a> Usable<'a> {
             Some((without, unloaded)) => (Some(without), unloaded),
             None => (None, observation),
         };
-        let mut usable =
-            Usable { options, nominal, without_sensors, contradictory, early_end: None, drifted: None };
-        let (observation, early_end, drifted) = usable.of_one_structure(observation);
-        let of_responses = usable.without_sensors.as_ref().and_then(|without| without.early_end);
-        (usable.early_end, usable.drifted) = (of_responses.or(early_end), drifted);
-        Ok((usable, observation))
+        let nominal = without_sensors.as_ref().map_or(nominal, |without| &without.nominal).clone();
+        let (observation, early_end, drifted) = of_one_structure(observation, &nominal, options);
+        let of_responses = without_sensors.as_ref().and_then(|without| without.early_end);
+        let early_end = of_responses.or(early_end);
+        Ok((Usable { options, nominal, without_sensors, contradictory, early_end, drifted }, observation))
     }
 
-    /// What the observation is held against: the fixture, without the sensors that were taken off.
+    /// The fixture that the observation is held against.
     pub(crate) fn fixture(&self) -> &Fixture {
-        self.nominal().fixture()
+        self.nominal.fixture()
     }
 
     /// The stated sensors whose mass was taken off the FRFs.
     pub(crate) fn sensors_off(&self) -> &[Effect] {
         self.without_sensors.as_ref().map_or(&[], WithoutSensors::sensors)
-    }
-
-    fn nominal(&self) -> &Hypothesis {
-        self.without_sensors.as_ref().map_or(self.nominal, |without| &without.nominal)
     }
 
     /// The FRFs to be held out that are of references which agree.
@@ -87,42 +83,42 @@ impl<'a> Usable<'a> {
             Some(without) => without.as_well(observation),
             None => observation,
         };
-        Ok(self.of_one_structure(observation).0)
-    }
-
-    /// The observation as if records had not ended too early and references were those of one structure; where
-    /// records ended, and how references differ.
-    fn of_one_structure(
-        &self,
-        observation: Observation,
-    ) -> (Observation, Option<RecordEnd>, Option<Drifted>) {
-        let (nominal, options) = (self.nominal(), self.options);
-        let without_drift =
-            |observation: Observation| match Drifted::of(&observation, nominal, &options.settings.modal) {
-                Some((drifted, without)) => (without, Some(drifted)),
-                None => (observation, None),
-            };
-        let (restored, end) = match without_early_end(&observation, nominal.fixture()) {
-            Some((restored, end)) => (Some(restored), Some(end)),
-            None => (None, None),
-        };
-        let (without, drifted) = without_drift(restored.unwrap_or_else(|| observation.clone()));
-        // Of a structure that drifted, poles of all references together tell the end of the records less well, or
-        // not at all. Where they tell drift and no end, there is none.
-        let is_in_doubt = end.is_some() == drifted.is_some();
-        let by_reference = || without_ends_of_references(&observation, nominal.fixture());
-        match is_in_doubt.then(by_reference).flatten() {
-            Some((each, end)) => {
-                let (without, drifted) = without_drift(each);
-                (without, Some(end), drifted)
-            }
-            None => (without, end, drifted),
-        }
+        Ok(of_one_structure(observation, &self.nominal, self.options).0)
     }
 
     /// Whether an FRF is of a reference that agrees with the others.
     fn keeps(&self, pair: &FrfPair) -> bool {
         self.drifted.as_ref().is_none_or(|drifted| drifted.keeps(&pair.reference))
+    }
+}
+
+/// The observation as if records had not ended too early and references were those of one structure; where
+/// records ended, and how references differ.
+fn of_one_structure(
+    observation: Observation,
+    nominal: &Hypothesis,
+    options: &DiagnosisOptions,
+) -> (Observation, Option<RecordEnd>, Option<Drifted>) {
+    let without_drift =
+        |observation: Observation| match Drifted::of(&observation, nominal, &options.settings.modal) {
+            Some((drifted, without)) => (without, Some(drifted)),
+            None => (observation, None),
+        };
+    let (restored, end) = match without_early_end(&observation, nominal.fixture()) {
+        Some((restored, end)) => (Some(restored), Some(end)),
+        None => (None, None),
+    };
+    let (without, drifted) = without_drift(restored.unwrap_or_else(|| observation.clone()));
+    // Of a structure that drifted, poles of all references together tell the end of the records less well, or
+    // not at all. Where they tell drift and no end, there is none.
+    let is_in_doubt = end.is_some() == drifted.is_some();
+    let by_reference = || without_ends_of_references(&observation, nominal.fixture());
+    match is_in_doubt.then(by_reference).flatten() {
+        Some((each, end)) => {
+            let (without, drifted) = without_drift(each);
+            (without, Some(end), drifted)
+        }
+        None => (without, end, drifted),
     }
 }
 

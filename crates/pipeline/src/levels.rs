@@ -81,6 +81,5 @@ fn mean(recording: &Recording, levels: &[SteppedLevel], remarks: Vec<String>) ->
         "the FRFs diagnosed are the means over {} levels, weighted by their noise",
         levels.len()
     ));
-    let window_decay = recording.levels.first().map_or(0.0, |level| level.window_decay);
-    Some(MeasuredFrfs { frfs, notes, window_decay, hammer_test: None })
+    Some(MeasuredFrfs { frfs, notes, window_decay: recording.window_decay(), hammer_test: None })
 }

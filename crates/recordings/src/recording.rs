@@ -67,6 +67,11 @@ pub struct TimeHistories {
 }
 
 impl Recording {
+    /// Decay of the exponential window over force and responses that its files state, 1/s; 0 without one.
+    pub fn window_decay(&self) -> f64 {
+        self.levels.first().map_or(0.0, |level| level.window_decay)
+    }
+
     /// Reads the FRFs of a test from its files.
     ///
     /// FRFs at nodes that the fixture does not have are left out and named in the notes, as are functions

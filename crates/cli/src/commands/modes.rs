@@ -70,7 +70,7 @@ pub(super) fn run(arguments: &ModesArguments) -> Result<String, Refusal> {
     notes.extend(restored.as_ref().map(|(_, end)| end.says()));
     let frfs = restored.as_ref().map_or(frfs, |(frfs, _)| frfs);
     let analysis = ModalAnalysis::of(frfs, &options).map_err(|error| arguments.recording.refusal(error))?;
-    let analysis = analysis.without_window(recording.levels.first().map_or(0.0, |level| level.window_decay));
+    let analysis = analysis.without_window(recording.window_decay());
     let damping = match fixture.as_ref().map(|fixture| (fixture, measured_damping(fixture, &analysis))) {
         None => None,
         Some((_, Ok(damping))) => Some(damping),

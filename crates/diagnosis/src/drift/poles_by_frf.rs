@@ -13,7 +13,8 @@ pub(crate) fn references(observation: &Observation) -> Vec<Channel> {
     distinct(observation.pairs().iter().map(|pair| &pair.reference))
 }
 
-fn distinct<'a>(channels: impl Iterator<Item = &'a Channel>) -> Vec<Channel> {
+/// Channels, each once, in the order in which they come.
+pub(crate) fn distinct<'a>(channels: impl Iterator<Item = &'a Channel>) -> Vec<Channel> {
     let mut all: Vec<Channel> = Vec::new();
     for channel in channels {
         if !all.contains(channel) {

@@ -9,6 +9,7 @@
 //! A too.
 
 use super::by_response::loads;
+use crate::drift::distinct;
 use crate::settings::moved_sensor::SHAPES;
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::Effect;
@@ -105,8 +106,7 @@ impl Load {
         let spacing = lines.omegas().nth(1)? - lines.omegas().next()?;
         let mut factors = vec![Complex64::ONE; observation.values().len()];
         let mut variances = vec![0.0; factors.len()];
-        for (frf, pair) in observation.pairs().iter().enumerate() {
-            let response = &pair.response;
+        for response in &distinct(observation.pairs().iter().map(|pair| &pair.response)) {
             let own = self.sensors.iter().filter(|sensor| loads(&sensor.place, response));
             let mass: f64 = own.map(|sensor| sensor.value(0)).sum();
             if mass == 0.0 {
@@ -115,16 +115,18 @@ impl Load {
             let shares = self.along(response, |own| own.share);
             let deviations = self.along(response, |own| own.std);
             let widths = self.along(response, |own| own.width);
-            let alike = observation.pairs().iter().filter(|other| other.response == *response).count();
+            let frfs = observation.pairs().iter().enumerate().filter(|(_, pair)| pair.response == *response);
+            let frfs: Vec<usize> = frfs.map(|(index, _)| index).collect();
             let accelerances = self.accelerance(observation, response)?;
             for ((line, accelerance), omega) in accelerances.iter().enumerate().zip(lines.omegas()) {
-                let (at, ln_omega) = (frf * lines.len() + line, omega.ln());
                 let load = mass * accelerance;
                 let [share, std, width] =
-                    [&shares, &deviations, &widths].map(|known| between(known, ln_omega));
-                factors[at] += share * load;
-                let times = (width / spacing).max(1.0) * alike as f64;
-                variances[at] = times * (std * load * observation.values()[at]).norm_sqr();
+                    [&shares, &deviations, &widths].map(|known| between(known, omega.ln()));
+                let times = (width / spacing).max(1.0) * frfs.len() as f64;
+                for at in frfs.iter().map(|frf| frf * lines.len() + line) {
+                    factors[at] += share * load;
+                    variances[at] = times * (std * load * observation.values()[at]).norm_sqr();
+                }
             }
         }
         Some(observation.times(&factors)?.with_variance_added(&variances))

@@ -1,7 +1,7 @@
 //! No files of a crate use each other in a circle: each can be read after those that it stands on.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Names of a module and of those that hold it, from the crate's root; or of what it holds.
 type Names = Vec<String>;
@@ -66,8 +66,7 @@ struct Files {
 
 impl Files {
     fn of(source: &Path) -> Self {
-        let mut codes = BTreeMap::new();
-        collect(source, source, &mut codes);
+        let codes = codes_below(source);
         let mut files = Files { uses: BTreeMap::new(), imported: BTreeMap::new() };
         for (module, code) in &codes {
             let (imports, rest) = imports(code);
@@ -120,21 +119,30 @@ impl Files {
     }
 }
 
-/// Files below a folder by their modules.
-fn collect(folder: &Path, source: &Path, codes: &mut BTreeMap<Names, String>) {
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.is_dir() {
-            collect(&path, source, codes);
-        } else if path.extension().is_some_and(|extension| extension == "rs") {
-            let within = path.strip_prefix(source).unwrap().with_extension("");
-            let mut module: Names = within.iter().map(|name| name.to_str().unwrap().to_owned()).collect();
-            module.pop_if(|last| matches!(last.as_str(), "mod" | "lib" | "main"));
-            if !module.iter().any(|name| name == "tests") {
-                codes.insert(module, code(&std::fs::read_to_string(&path).unwrap()));
-            }
+/// Every Rust file below a folder.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    entries
+        .flat_map(|path| match path.is_dir() {
+            true => sources(&path),
+            false => vec![path],
+        })
+        .filter(|path| path.extension().is_some_and(|extension| extension == "rs"))
+        .collect()
+}
+
+/// The code of the files below a folder by their modules.
+fn codes_below(source: &Path) -> BTreeMap<Names, String> {
+    let mut codes = BTreeMap::new();
+    for path in sources(source) {
+        let within = path.strip_prefix(source).unwrap().with_extension("");
+        let mut module: Names = within.iter().map(|name| name.to_str().unwrap().to_owned()).collect();
+        module.pop_if(|last| matches!(last.as_str(), "mod" | "lib" | "main"));
+        if !module.iter().any(|name| name == "tests") {
+            codes.insert(module, code(&std::fs::read_to_string(&path).unwrap()));
         }
     }
+    codes
 }
 
 /// The imports of a file, whether they are exported again, and the rest of the code.
@@ -225,18 +233,6 @@ fn imports_are_read_as_the_compiler_reads_them() {
     assert_eq!(named(&rest), ["g::h"]);
     let tests = "fn a() {}\n// crate::b\n#[cfg(test)]\n#[allow(x)]\nmod tests {\n use super::*; }\nfn c() {}";
     assert_eq!(code(tests), "fn a() {}\n\nfn c() {}");
-}
-
-/// Every Rust file below a folder.
-fn sources(folder: &Path) -> Vec<std::path::PathBuf> {
-    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    entries
-        .flat_map(|path| match path.is_dir() {
-            true => sources(&path),
-            false => vec![path],
-        })
-        .filter(|path| path.extension().is_some_and(|extension| extension == "rs"))
-        .collect()
 }
 
 #[test]
