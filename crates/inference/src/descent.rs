@@ -252,30 +252,45 @@ fn lower<P: LeastSquares>(
 
 /// Shares of an undamped step that are tried in turn.
 const SHARES: [f64; 4] = [1.0, 0.4, 0.15, 0.05];
+/// Corrections of a share at the most.
+const CORRECTIONS: usize = 4;
 
 /// The point beside the way of an undamped step that lowers the objective below `than`, the lowest of those
 /// tried.
 ///
 /// What a share α of the step does across a curved valley grows as α², and its cost as α⁴: damped steps
 /// creep. One more step from there, by the same derivatives, takes that back but for what grows as α³ (the
-/// geodesic acceleration of Transtrum & Sethna, arXiv:1201.5885, by a finite step).
+/// geodesic acceleration of Transtrum & Sethna, arXiv:1201.5885, by a finite step); where the valley is as
+/// narrow as sharp resonances make it that is still far up its side, and further ones take it back in turn.
 fn along_valley<P: LeastSquares>(problem: &P, at: &At<P>, than: f64) -> Option<(P::Point, f64)> {
     let mut best: Option<(P::Point, f64)> = None;
     for share in SHARES {
-        let next = problem.shortened(at.point, &at.equations, share).and_then(|there| {
-            let own = problem.equations(&there, at.derivatives, &at.weights);
-            problem.corrected(&there, at.point, [&own, &at.equations], share)
-        });
-        let Some(next) = next else { continue };
-        let after = problem.objective(&next, &at.weights);
         let lowest = best.as_ref().map_or(than, |(_, lowest)| *lowest);
-        if after < lowest {
-            best = Some((next, after));
-        } else if best.is_some() {
-            break;
+        match corrected(problem, at, share).filter(|(_, after)| *after < lowest) {
+            Some(lower) => best = Some(lower),
+            None if best.is_some() => break,
+            None => {}
         }
     }
     best
+}
+
+/// Where a share of an undamped step leads, corrected for as long as that lowers the objective.
+fn corrected<P: LeastSquares>(problem: &P, at: &At<P>, share: f64) -> Option<(P::Point, f64)> {
+    let correction = |there: &P::Point| {
+        let own = problem.equations_from(there, at.point, at.derivatives, &at.weights);
+        let next = problem.corrected(there, at.point, [&own, &at.equations], share)?;
+        let after = problem.objective(&next, &at.weights);
+        Some((next, after))
+    };
+    let mut found = correction(&problem.shortened(at.point, &at.equations, share)?)?;
+    for _ in 1..CORRECTIONS {
+        match correction(&found.0).filter(|(_, after)| *after < found.1) {
+            Some(lower) => found = lower,
+            None => break,
+        }
+    }
+    Some(found)
 }
 
 /// How fast a fit comes nearer to its limit, from one set of derivatives to the next.

@@ -41,6 +41,19 @@ pub trait LeastSquares {
         weights: &Self::Weights,
     ) -> Self::Equations;
 
+    /// The normal equations of what is left at `at`, from derivatives that were all taken at `from`. To be said
+    /// where [`LeastSquares::equations`] takes some anew at each point: beside others from elsewhere, what one
+    /// coordinate does no longer makes up for what another does.
+    fn equations_from(
+        &self,
+        at: &Self::Point,
+        _from: &Self::Point,
+        derivatives: &Self::Derivatives,
+        weights: &Self::Weights,
+    ) -> Self::Equations {
+        self.equations(at, derivatives, weights)
+    }
+
     /// The point that a step with the given relative damping leads to; `None` where there is none.
     fn stepped(&self, point: &Self::Point, equations: &Self::Equations, damping: f64) -> Option<Self::Point>;
 

@@ -11,7 +11,7 @@ use crate::settings::fit::{
     CONVERGED, CONVERGED_SHARE, CREEPS, CURVED_VALLEY, MOST_RESUMPTIONS, MOST_STEPS, REUSE, SIGNAL_AS_NOISE,
 };
 use jointscope_inference::{
-    Convergence, Covariance, DerivativePrecision, LeastSquares, NormalEquations, Parameter, Settings,
+    Convergence, Covariance, DerivativePrecision, LeastSquares, Limit, NormalEquations, Parameter, Settings,
     StepDamping, descend,
 };
 use jointscope_tolerances::{Tolerance, moved};
@@ -56,6 +56,21 @@ impl Point {
 /// What the mass and the quantities do to each value, in their order.
 pub(super) type Columns = Vec<Vec<Complex64>>;
 
+/// How far a fit goes.
+pub(super) struct Course {
+    pub steps: usize,
+    /// Whether derivatives that it is given were taken at its start.
+    pub fresh: bool,
+    /// What it has to come near, else it is given up.
+    pub limit: Option<Limit>,
+}
+
+impl Default for Course {
+    fn default() -> Self {
+        Course { steps: MOST_STEPS, fresh: false, limit: None }
+    }
+}
+
 /// A finished fit.
 pub(super) struct Fitted {
     pub point: Point,
@@ -75,7 +90,8 @@ impl Fitted {
                 break;
             }
             let here = self.point.with(self.point.coordinates.clone());
-            match problem.fit_from(here, Some(self.others.clone()), MOST_STEPS) {
+            let course = Course { fresh: true, ..Course::default() };
+            match problem.fit_from(here, Some(self.others.clone()), course) {
                 Some(next) if next.point.objective < self.point.objective => self.point = next.point,
                 _ => break,
             }
@@ -246,7 +262,16 @@ impl<'a> Problem<'a> {
         others: &[Vec<Complex64>],
         weights: &[f64],
     ) -> NormalEquations {
-        let own = self.own_columns(at);
+        self.equations_by(at, (&self.own_columns(at), others), weights)
+    }
+
+    /// Normal equations at a point, from derivatives by the laws' coordinates and by the others.
+    fn equations_by(
+        &self,
+        at: &Point,
+        (own, others): (&[Vec<Complex64>], &[Vec<Complex64>]),
+        weights: &[f64],
+    ) -> NormalEquations {
         let columns: Vec<&[Complex64]> = own.iter().chain(others).map(Vec::as_slice).collect();
         let priors = |m: usize| (self.parameters[m].precision, at.coordinates[m]);
         let residual = self.test.setup.recorded.residual(&at.predicted);
@@ -297,17 +322,20 @@ impl<'a> Problem<'a> {
         nearby: Option<Columns>,
         steps: usize,
     ) -> Option<Fitted> {
-        self.fit_from(self.point(start, None)?, nearby, steps)
+        self.fit_from(self.point(start, None)?, nearby, Course { steps, ..Course::default() })
     }
 
-    fn fit_from(&self, start: Point, nearby: Option<Columns>, steps: usize) -> Option<Fitted> {
+    /// The same from a point, by a course of its own.
+    pub(super) fn fit_from(&self, start: Point, nearby: Option<Columns>, course: Course) -> Option<Fitted> {
         let floor = self.test.setup.recorded.degrees() as f64;
         let settings = Settings {
-            steps,
+            steps: course.steps,
             damping: StepDamping { initial: 1e-6, decrease: 0.03, least: 1e-15, raised: 0.0, most: 1e8 },
             convergence: Convergence { gain: CONVERGED, share: CONVERGED_SHARE, floor },
             reuse: Some(REUSE),
             trust_old: true,
+            fresh: course.fresh,
+            limit: course.limit,
             curved_valley: CURVED_VALLEY,
             ..Settings::default()
         };
@@ -362,6 +390,10 @@ impl LeastSquares for Problem<'_> {
 
     fn equations(&self, at: &Point, others: &Columns, _: &()) -> NormalEquations {
         self.equations_of(at, others, self.test.weights)
+    }
+
+    fn equations_from(&self, at: &Point, from: &Point, others: &Columns, _: &()) -> NormalEquations {
+        self.equations_by(at, (&self.own_columns(from), others), self.test.weights)
     }
 
     fn stepped(&self, at: &Point, equations: &NormalEquations, damping: f64) -> Option<Point> {

@@ -132,12 +132,17 @@ struct Runs {
 }
 
 fn run(case: &Case, count: u64, seed: u64) -> Runs {
+    run_of(case, (count, seed), 0.01, &EIGHT)
+}
+
+/// The same of these FRFs with this noise.
+fn run_of(case: &Case, (count, seed): (u64, u64), level: f64, frfs: &[(&str, &str)]) -> Runs {
     let fixture = fixture(case, "");
     let (mut rng, mut noise) = (generator(seed), Noise::new(seed));
     let mut runs = Runs::default();
     for _ in 0..count {
         let truth = drawn_within_tolerance(&fixture, &mut rng).unwrap();
-        let fit = fit(&fixture, &recorded(&truth, &mut noise, 0.01, &EIGHT), false);
+        let fit = fit(&fixture, &recorded(&truth, &mut noise, level, frfs), false);
         let (found, expected) = (found(&fit), six(&truth));
         runs.scores.push(std::array::from_fn(|e| (found[e] - expected[e]) / fit.covariance[e][e].sqrt()));
         runs.errors.push(std::array::from_fn(|e| found[e] / expected[e] - 1.0));
