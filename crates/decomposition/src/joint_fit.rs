@@ -37,7 +37,7 @@ pub use several::{FoundJoint, JointsCovariance, JointsFit, SeveralError, fit_joi
 
 use crate::settings::laws::FIRST_MASS;
 use crate::settings::noise::EXPLAINED;
-use crate::settings::starts::{DOUBTFUL_FIT, NO_DEPENDENCE, START_LOSS};
+use crate::settings::starts::{ASTRAY, DOUBTFUL_FIT, NO_DEPENDENCE, START_LOSS};
 use crate::{DecompositionError, IdlePoints, LikelihoodFit, Sides};
 use admissible::Freed;
 use jointscope_averaging::Band;
@@ -114,6 +114,9 @@ pub fn fit_joint(
         by_its_law(problem, at, heavy)
     });
     let (problem, first, free) = followed.unwrap_or((problem, first, free));
+    if first.point.objective > ASTRAY * recorded.size(&recorded.values) {
+        return Err(NOWHERE_NEAR);
+    }
     let asymmetry = admissible::asymmetry(&problem, &first, free);
     let inflated = Inflated::of(&problem, &first);
     let problem = problem.weighted(&inflated.weights);
@@ -138,6 +141,8 @@ fn units_of(k: RealMatrix2, scalar: bool) -> RealMatrix2 {
 }
 
 const NO_START: DecompositionError = DecompositionError::NoFit("no start gives finite FRFs");
+const NOWHERE_NEAR: DecompositionError =
+    DecompositionError::NoFit("no joint between these blocks comes near the FRFs from where it was sought");
 const UNDETERMINED: DecompositionError =
     DecompositionError::NoFit("the FRFs leave an element of k or c undetermined");
 

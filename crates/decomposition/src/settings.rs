@@ -91,6 +91,8 @@ pub(crate) mod starts {
     /// Weighted squared change by one standard deviation of a quantity below which the FRFs do not depend on
     /// it.
     pub(crate) const NO_DEPENDENCE: f64 = 1e-9;
+    /// Share of what the FRFs weigh that a fit may leave of them: one that leaves more has found no joint.
+    pub(crate) const ASTRAY: f64 = 0.5;
     /// Mean square departure of the quantities, in standard deviations, above which another start is tried.
     pub(crate) const PLAUSIBLE_DEPARTURE: f64 = 4.0;
     /// Stiffness of the starts as shares of the fixture's.
@@ -188,6 +190,13 @@ pub(crate) mod laws {
 
 /// Laws of several joints at once.
 pub(crate) mod several {
+    use jointscope_inference::Limit;
+
+    /// Laws of a round that are gone on with, the nearest to the FRFs, however far the others.
+    pub(crate) const NEAREST: usize = 2;
+    /// When the fit of a law that competes with others is given up, the nearest being within reach.
+    pub(crate) const LIMIT: Limit =
+        Limit { objective: 0.0, promises: 3.0, gains: 30.0, patience: 3, reach: 0.0 };
     /// Steps of a law's fit: one that needs more is far from the FRFs.
     pub(crate) const MOST_STEPS: usize = 40;
     /// Of the law without damping, whose resonances are infinite: it is near at once or not at all.

@@ -161,7 +161,7 @@ pub(super) fn probable(mut all: Vec<Candidate>) -> (Vec<LawFit>, Vec<f64>) {
     let best = all.iter().min_by(|a, b| a.fit.objective.total_cmp(&b.fit.objective));
     let inflation = best.map_or(1.0, |best| best.inflation);
     for candidate in &mut all {
-        candidate.evidence += 0.5 * candidate.fit.objective * (1.0 - 1.0 / inflation);
+        candidate.evidence = candidate.inflated(inflation);
     }
     ranked(all)
 }
@@ -256,10 +256,13 @@ fn with_mass(
         Some((candidate, gain))
     };
     let nearest = most_evidence(light.iter());
+    // Where a law explains the FRFs without mass, one that is far from it does not with mass. Where none does,
+    // the nearest may have bent the blocks instead, and another law with mass be the one.
+    let is_explained = light.iter().any(|light| light.inflation <= 1.0);
     let (mut heavy, mut most): (Vec<Candidate>, f64) = (Vec::new(), 0.0);
     for light in light {
         // Where mass gains nothing for the laws nearest to the FRFs, it does not for the others.
-        if nearest - light.evidence > NEAR_LOG_EVIDENCE && most < MASS_GAIN {
+        if is_explained && nearest - light.evidence > NEAR_LOG_EVIDENCE && most < MASS_GAIN {
             break;
         }
         if let Some((candidate, gain)) = with_mass(light) {
@@ -304,6 +307,11 @@ fn variances(parameters: &[Parameter]) -> Vec<f64> {
 }
 
 impl Candidate {
+    /// Its evidence with noise whose variance counts `inflation` times.
+    pub(super) fn inflated(&self, inflation: f64) -> f64 {
+        self.evidence + 0.5 * self.fit.objective * (1.0 - 1.0 / inflation)
+    }
+
     /// The law of the one joint, its fit gone on with until it has converged by derivatives taken there:
     /// evidence is of optima, and one that is missed by ten in χ² decides between laws.
     fn converged(problem: &Problem, fitted: Fitted) -> Option<Self> {

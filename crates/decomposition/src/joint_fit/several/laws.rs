@@ -1,13 +1,16 @@
 //! Laws of several joints over frequency.
 //!
-//! Trying all combinations would take 6ᵐ fits of m joints. All joints begin with K + sC; in each round every
-//! joint is fitted with every law, the others keeping theirs, and the one change that gains most evidence is
-//! made. A joint that takes the blame for another's law is so overtaken by the other.
+//! Trying all combinations would take 6ᵐ fits of m joints. All begin with the one law that is most probable
+//! for all of them: joints of one structure are mostly made alike, and of those that are, the first to get its
+//! law would take the blame for the others. Then in each round every joint is fitted with every law, the others
+//! keeping theirs, and the one change that gains most evidence is made, once a joint.
 
 use super::super::law::{Dynamics, LawKind, coordinates};
 use super::super::laws::{Candidate, LawFit, probable};
-use super::super::problem::{Columns, Fitted, Problem, Test};
-use crate::settings::several::{FEW_STEPS, MOST_STEPS};
+use super::super::problem::{Columns, Course, Fitted, Problem, Test};
+use crate::settings::laws::NEAR_LOG_EVIDENCE;
+use crate::settings::several::{FEW_STEPS, LIMIT, MOST_STEPS, NEAREST};
+use jointscope_inference::Limit;
 
 /// Laws of all joints at their optimum.
 pub(super) struct State {
@@ -34,42 +37,20 @@ impl State {
 /// Every joint's laws, the most probable first, the other joints following their most probable law, and the
 /// laws that all follow; without the joints' masses.
 pub(super) fn compared(viscous: &Problem, first: &Fitted) -> (Vec<Vec<LawFit>>, State) {
-    let joints = viscous.laws.len();
-    let mut current = State {
-        laws: viscous.laws.clone(),
-        coordinates: first.point.coordinates.clone(),
-        others: first.others.clone(),
-    };
+    let test = viscous.test;
+    let mut current = alike(viscous, first);
+    let mut may_change = vec![true; viscous.laws.len()];
     loop {
-        let all: Vec<Vec<(Candidate, State)>> =
-            (0..joints).map(|joint| candidates(viscous.test, &current, joint)).collect();
-        // Noise is inflated by what the best combination leaves.
-        let lowest = all.iter().flatten().min_by(|a, b| a.0.fit.objective.total_cmp(&b.0.fit.objective));
-        let inflation = lowest.map_or(1.0, |(best, _)| best.inflation);
-        let evidence = |candidate: &Candidate| {
-            candidate.evidence + 0.5 * candidate.fit.objective * (1.0 - 1.0 / inflation)
-        };
-        let stays = |joint: usize, candidate: &Candidate| candidate.fit.kind == current.laws[joint].kind;
-        let gain = |joint: usize, candidate: &Candidate| {
-            let own = all[joint].iter().find(|(own, _)| stays(joint, own));
-            own.map_or(f64::NEG_INFINITY, |(own, _)| evidence(candidate) - evidence(own))
-        };
-        let changes = all.iter().enumerate().flat_map(|(joint, all)| {
-            let others = all.iter().enumerate().filter(move |(_, (candidate, _))| !stays(joint, candidate));
-            others.map(move |(place, (candidate, _))| (joint, place, gain(joint, candidate)))
-        });
-        let best = changes.filter(|(.., gain)| *gain > 0.0).max_by(|a, b| a.2.total_cmp(&b.2));
-        let changed = current.laws.iter().zip(&viscous.laws).filter(|(a, b)| a.kind != b.kind).count();
-        match best {
-            // No more changes than joints: laws that take turns are as good as each other.
-            Some((joint, place, _)) if changed < joints && current.laws[joint].kind == LawKind::Viscous => {
-                if let Some((_, state)) =
-                    all.into_iter().nth(joint).and_then(|all| all.into_iter().nth(place))
-                {
-                    current = state;
-                }
+        let joints = 0..may_change.len();
+        let mut all: Vec<Vec<(Candidate, State)>> =
+            joints.map(|joint| of_every_kind(test, &current, Some(joint))).collect();
+        match best_change(&all, &current, &may_change) {
+            // One change a joint: laws that take turns are as good as each other.
+            Some((joint, place)) => {
+                may_change[joint] = false;
+                current = all.swap_remove(joint).swap_remove(place).1;
             }
-            _ => {
+            None => {
                 let bare = |all: Vec<(Candidate, State)>| {
                     probable(all.into_iter().map(|(candidate, _)| candidate).collect()).0
                 };
@@ -79,50 +60,133 @@ pub(super) fn compared(viscous: &Problem, first: &Fitted) -> (Vec<Vec<LawFit>>, 
     }
 }
 
-/// One joint with every law, the others keeping theirs.
-fn candidates(test: Test, current: &State, joint: usize) -> Vec<(Candidate, State)> {
-    let of_kind = |kind: LawKind| {
-        let shapes: &[f64] = match kind {
-            _ if kind == current.laws[joint].kind => &[0.0],
-            LawKind::StandardLinearSolid => &[-1.0, 1.0],
-            LawKind::Fractional => &[-0.3, 0.3],
-            _ => &[0.0],
-        };
-        let fits = shapes.iter().filter_map(|shape| candidate(test, current, joint, (kind, *shape)));
-        fits.reduce(|a, b| if b.0.fit.objective < a.0.fit.objective { b } else { a })
+/// All joints with the one law that is most probable for all of them.
+fn alike(viscous: &Problem, first: &Fitted) -> State {
+    let as_fitted = State {
+        laws: viscous.laws.clone(),
+        coordinates: first.point.coordinates.clone(),
+        others: first.others.clone(),
     };
-    LawKind::ALL.into_iter().filter_map(of_kind).collect()
+    let all = of_every_kind(viscous.test, &as_fitted, None);
+    let inflation = least_inflation(all.iter());
+    let probable = all.into_iter().max_by(|a, b| a.0.inflated(inflation).total_cmp(&b.0.inflated(inflation)));
+    probable.map_or(as_fitted, |(_, state)| state)
 }
 
-/// A joint with a law at its optimum next to the current one: in the middle of the band it begins with the
-/// stiffness and damping that it has there.
+/// The joint whose change of law gains most evidence, and the place of that law among its candidates.
+fn best_change(
+    all: &[Vec<(Candidate, State)>],
+    current: &State,
+    may_change: &[bool],
+) -> Option<(usize, usize)> {
+    let inflation = least_inflation(all.iter().flatten());
+    let stays = |joint: usize, candidate: &Candidate| candidate.fit.kind == current.laws[joint].kind;
+    let gain = |joint: usize, candidate: &Candidate| {
+        let own = all[joint].iter().find(|(own, _)| stays(joint, own));
+        own.map_or(f64::NEG_INFINITY, |(own, _)| candidate.inflated(inflation) - own.inflated(inflation))
+    };
+    let joints = all.iter().enumerate().filter(|(joint, _)| may_change[*joint]);
+    let changes = joints.flat_map(|(joint, all)| {
+        let others = all.iter().enumerate().filter(move |(_, (candidate, _))| !stays(joint, candidate));
+        others.map(move |(place, (candidate, _))| (joint, place, gain(joint, candidate)))
+    });
+    let best = changes.filter(|(.., gain)| *gain > 0.0).max_by(|a, b| a.2.total_cmp(&b.2))?;
+    Some((best.0, best.1))
+}
+
+/// What the best combination leaves, as an inflation of the noise.
+fn least_inflation<'a>(all: impl Iterator<Item = &'a (Candidate, State)>) -> f64 {
+    let lowest = all.min_by(|a, b| a.0.fit.objective.total_cmp(&b.0.fit.objective));
+    lowest.map_or(1.0, |(best, _)| best.inflation)
+}
+
+/// Shapes that a law is tried from.
+fn shapes(kind: LawKind) -> &'static [f64] {
+    match kind {
+        LawKind::StandardLinearSolid => &[-1.0, 1.0],
+        LawKind::Fractional => &[-0.3, 0.3],
+        _ => &[0.0],
+    }
+}
+
+fn lower(a: (Candidate, State), b: (Candidate, State)) -> (Candidate, State) {
+    if b.0.fit.objective < a.0.fit.objective { b } else { a }
+}
+
+/// One joint (all without one) with every law, the others keeping theirs.
+fn of_every_kind(test: Test, current: &State, joint: Option<usize>) -> Vec<(Candidate, State)> {
+    let own = current.laws[joint.unwrap_or(0)].kind;
+    let mut all: Vec<(Candidate, State)> = Vec::new();
+    for kind in std::iter::once(own).chain(LawKind::ALL.into_iter().filter(|kind| *kind != own)) {
+        let shapes = if kind == own { &[0.0] } else { shapes(kind) };
+        let nearest = all.iter().min_by(|a, b| a.0.fit.objective.total_cmp(&b.0.fit.objective));
+        let limit = nearest.map(|(nearest, _)| Limit {
+            objective: nearest.fit.objective,
+            reach: 2.0 * NEAR_LOG_EVIDENCE * nearest.inflation,
+            ..LIMIT
+        });
+        let fits = shapes.iter().filter_map(|shape| candidate(test, current, joint, (kind, *shape), limit));
+        all.extend(fits.reduce(lower));
+    }
+    converged(test, joint, all)
+}
+
+/// The same laws, those nearest to the FRFs gone on with until they have converged by derivatives taken there:
+/// evidence is of optima.
+fn converged(test: Test, joint: Option<usize>, mut all: Vec<(Candidate, State)>) -> Vec<(Candidate, State)> {
+    all.sort_by(|a, b| a.0.fit.objective.total_cmp(&b.0.fit.objective));
+    let least = all.first().map_or(0.0, |(nearest, _)| nearest.fit.objective);
+    for (rank, one) in all.iter_mut().enumerate() {
+        if rank < NEAREST || one.0.fit.objective - least < 2.0 * NEAR_LOG_EVIDENCE {
+            let problem = Problem::lawful(test, one.1.laws.clone(), None);
+            let again = problem.point(one.1.coordinates.clone(), None).and_then(|point| {
+                let mut fitted = Fitted { point, others: one.1.others.clone() };
+                fitted.refresh(&problem)?;
+                of_fitted(&problem, fitted, joint)
+            });
+            again.into_iter().for_each(|again| *one = again);
+        }
+    }
+    all
+}
+
+/// A joint (all without one) with a law at its optimum next to the current one: in the middle of the band it
+/// begins with the stiffness and damping that it has there.
 fn candidate(
     test: Test,
     current: &State,
-    joint: usize,
+    joint: Option<usize>,
     (kind, shape): (LawKind, f64),
+    limit: Option<Limit>,
 ) -> Option<(Candidate, State)> {
     let mut laws = current.laws.clone();
-    let own = &current.laws[joint];
-    laws[joint] = own.of_kind(kind);
-    let first: usize = current.laws[..joint].iter().map(Dynamics::count).sum();
-    let (before, rest) = current.coordinates.split_at(first);
-    let (here, after) = rest.split_at(own.count());
-    let mut start = before.to_vec();
-    if kind == own.kind {
-        start.extend_from_slice(here);
-    } else {
+    let mut rest = current.coordinates.as_slice();
+    let mut start = Vec::with_capacity(rest.len());
+    for (place, law) in laws.iter_mut().enumerate() {
+        let own = *law;
+        let (here, after) = rest.split_at(own.count());
+        rest = after;
+        if kind == own.kind || joint.is_some_and(|joint| joint != place) {
+            start.extend_from_slice(here);
+            continue;
+        }
+        *law = own.of_kind(kind);
         let [k, d, _] = own.matrices(here);
-        let mut matrices = coordinates(&laws[joint], k, d);
-        matrices.resize(laws[joint].count() - laws[joint].shapes(), 0.0);
-        matrices.resize(laws[joint].count(), shape);
+        let mut matrices = coordinates(law, k, d);
+        matrices.resize(law.count() - law.shapes(), 0.0);
+        matrices.resize(law.count(), shape);
         start.extend(matrices);
     }
-    start.extend_from_slice(after);
+    start.extend_from_slice(rest);
     let problem = Problem::lawful(test, laws, None);
     let steps = if kind == LawKind::Constant { FEW_STEPS } else { MOST_STEPS };
-    let fitted = problem.fit_within(start, Some(current.others.clone()), steps)?;
-    let candidate = Candidate::of(&problem, &fitted, joint)?;
+    let course = Course { steps, limit, ..Course::default() };
+    let fitted = problem.fit_from(problem.point(start, None)?, Some(current.others.clone()), course)?;
+    of_fitted(&problem, fitted, joint)
+}
+
+fn of_fitted(problem: &Problem, fitted: Fitted, joint: Option<usize>) -> Option<(Candidate, State)> {
+    let candidate = Candidate::of(problem, &fitted, joint.unwrap_or(0))?;
     let Fitted { point, others } = fitted;
-    Some((candidate, State { laws: problem.laws, coordinates: point.coordinates, others }))
+    Some((candidate, State { laws: problem.laws.clone(), coordinates: point.coordinates, others }))
 }
