@@ -24,7 +24,9 @@ impl Judgement {
         let not_rigid = analysis.spectrum.h41.rigidity().filter(|chi2| *chi2 > NOT_RIGID);
         let agrees_with_fixture =
             MatrixElement::distinct(scalar).all(|element| agrees(analysis, fixture, &best, element));
-        let excluded = contradiction.is_some_and(|contradiction| contradiction.excludes_use());
+        // What explains every FRF is worth more than means over lines of it.
+        let excluded = poor_fit.or(not_rigid).is_some()
+            && contradiction.is_some_and(|contradiction| contradiction.excludes_use());
         let verdict = if (fit.is_none() && whole.is_none()) || !first.is_determined() || excluded {
             Use::Unusable
         } else if poor_fit.or(not_rigid).is_some() || contradiction.is_some() || !agrees_with_fixture {
@@ -78,7 +80,8 @@ fn contradiction(analysis: &Analysis, best: &JointEstimate) -> Option<Contradict
 
 fn agrees(analysis: &Analysis, fixture: &Fixture, best: &JointEstimate, element: MatrixElement) -> bool {
     let figure = best.figure(DynamicStiffnessPart::Stiffness, element);
-    let known = nominal_std(analysis, fixture, element).unwrap_or(0.0);
+    // Nothing disagrees with what is stated as unknown.
+    let Some(known) = nominal_std(analysis, fixture, element) else { return true };
     let nominal = analysis.nominal_average(DynamicStiffnessPart::Stiffness, element, best.paper);
     nominal.is_some_and(|nominal| (figure.value - nominal).abs() <= Z95 * figure.total().hypot(known))
 }

@@ -7,7 +7,7 @@ use crate::numbers::counted;
 use crate::{Remarks, Summary, capitalised};
 use jointscope_decomposition::{
     Analysis, Contradiction, DynamicStiffnessPart, ElementFigure, JointEstimate, JointFit, JointsFit,
-    LikelihoodFit, MatrixElement, Method, Relation,
+    LikelihoodFit, MatrixElement, Method, Relation, Use,
 };
 use jointscope_fixture::{Fixture, JointLaw};
 use jointscope_frf::noise::NoiseSource;
@@ -79,7 +79,8 @@ fn headline(subject: &Subject) -> String {
     if !figure.is_determined() {
         return format!("Joint {joint}: this test does not determine {symbol} ({value}{mean}).");
     }
-    if judgement.contradiction.is_some_and(|contradiction| contradiction.excludes_use()) {
+    let excluded = judgement.contradiction.filter(|contradiction| contradiction.excludes_use());
+    if judgement.verdict == Use::Unusable && excluded.is_some() {
         return format!(
             "Joint {joint}: no constant k and c fits these FRFs; {symbol} = {value} is not to be used."
         );
