@@ -125,7 +125,8 @@ fn bush_cards(joint: &Joint, id: &mut u64, notes: &mut Vec<String>) -> Result<St
         row("", "B", real(damping[0][0]), turning(damping[1][1]));
         neglected(joint, "c12", damping, notes);
     }
-    if !is_zero(&joint.structural) {
+    // Tables by line hold all of the joint's losses.
+    if !is_zero(&joint.structural) && joint.lines.is_empty() {
         let structural = about(&joint.structural, centre.offset);
         let ratio = |part: f64, of: f64| if of == 0.0 { 0.0 } else { part / of };
         // With one field stated all others count as zero, so all are (PBUSH, remark 9).

@@ -3,7 +3,7 @@
 use crate::common::{LENGTH, beam, exported, file, same};
 use crate::readers;
 use jointscope_comparison::Decomposed;
-use jointscope_export::{ElasticCentre, ExportError, ExportOptions, Program, write};
+use jointscope_export::{ElasticCentre, ExportError, ExportOptions, Form, Program, write};
 use serde_json::{Value, json};
 
 fn plain() -> Value {
@@ -207,6 +207,25 @@ fn a_structural_joint_is_written_with_structural_damping_and_no_dashpot() {
     let joint = exported(&file, &ExportOptions::default()).unwrap().joints[0].clone();
     assert!(joint.says.contains("fractional, and K and C are what it has at 100 Hz alone"), "{}", joint.says);
     assert_eq!(joint.damping, stated);
+}
+
+#[test]
+fn a_bush_with_tables_by_line_has_the_losses_of_a_structural_joint_once() {
+    let mut file = fitted();
+    (file["joint"]["stiffness"], file["joint"]["damping"]) =
+        (json!(beam(76.0, LENGTH)), json!(beam(76e-5, LENGTH)));
+    file["joint"]["law"] = json!("structural");
+    file["joint"]["follows"] = json!({"law": "structural", "frequency": 100.0,
+        "loss_factor": {"value": [[0.004, 0.004], [0.004, 0.004]], "std": [[1e-4, 1e-4], [1e-4, 1e-4]]}});
+    let deck = |by_line: bool| {
+        let options = ExportOptions { by_line, ..ExportOptions::default() };
+        let export = exported(&file, &options).unwrap();
+        write(&export, Program::Nastran, Some(Form::Bush), &[]).unwrap()
+    };
+    let has_loss_factor = |deck: &str| deck.lines().any(|line| !line.starts_with('$') && line.contains("GE"));
+    assert!(has_loss_factor(&deck(false)));
+    let tables = deck(true);
+    assert!(tables.contains("PBUSHT") && !has_loss_factor(&tables), "{tables}");
 }
 
 #[test]
