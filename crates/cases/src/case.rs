@@ -102,13 +102,21 @@ pub fn listed(text: &str) -> Result<Vec<Case>, CasesError> {
     Ok(cases)
 }
 
+/// Name of a file that is a fixture and no answer: where it lies, a case is meant.
+const FIXTURE: &str = "fixture.json";
+
 /// The cases of folders, in the order of their names: each that holds recordings is one. A folder with
-/// recordings and no fixture, or several, is a case with a fault.
+/// recordings and no fixture, or several, is a case with a fault, and so is one below the top that
+/// has a `fixture.json` alone.
 ///
 /// # Errors
 /// No folder holds recordings.
 pub fn of_folders(mut folders: Vec<FolderOfFiles>) -> Result<Vec<Case>, CasesError> {
-    folders.retain(|folder| !folder.recordings.is_empty());
+    let none = folders.iter().all(|folder| folder.recordings.is_empty());
+    let is_meant = |folder: &FolderOfFiles| {
+        !none && !folder.name.is_empty() && folder.fixtures.iter().any(|name| name == FIXTURE)
+    };
+    folders.retain(|folder| !folder.recordings.is_empty() || is_meant(folder));
     folders.sort_by(|a, b| a.name.cmp(&b.name));
     if folders.is_empty() {
         return Err(CasesError::None(
@@ -121,6 +129,9 @@ pub fn of_folders(mut folders: Vec<FolderOfFiles>) -> Result<Vec<Case>, CasesErr
         recordings.sort();
         let below = |file: &String| if path.is_empty() { file.clone() } else { format!("{path}/{file}") };
         let fault = match fixtures.as_slice() {
+            _ if recordings.is_empty() => Some(format!(
+                "{path}: has a fixture and no recording; put its FRFs or hits (.uff, .unv, .csv, .mat) beside it"
+            )),
             [_] => None,
             [] => Some(format!(
                 "{path}: has recordings and no fixture; put the fixture's JSON file beside them"
@@ -206,10 +217,13 @@ mod tests {
             folder("b", &["f.json", "g.json"], &["1.uff"]),
             folder("a/1", &["f.json"], &["2.uff", "1.uff"]),
             folder("c", &[], &["1.uff"]),
-            folder("", &["f.json"], &[]),
+            folder("d", &["fixture.json"], &[]),
+            folder("out", &["refitted.json"], &[]),
+            folder("", &["fixture.json"], &[]),
         ]);
         let cases = cases.unwrap();
-        assert_eq!(cases.len(), 3);
+        assert_eq!(cases.len(), 4);
+        assert!(cases[3].fault.as_ref().unwrap().contains("all/d: has a fixture and no recording"));
         assert_eq!((cases[0].name.as_str(), cases[0].fixture.as_str()), ("a/1", "all/a/1/f.json"));
         assert_eq!(cases[0].recordings, ["all/a/1/1.uff", "all/a/1/2.uff"]);
         assert!(cases[1].fault.as_ref().unwrap().contains("2 JSON files (f.json, g.json)"));
