@@ -5,7 +5,7 @@
 
 Blocks and points are drawn from their tolerances; each point is struck ten times, H1 and coherence are estimated from the hits. Nothing of the program's mechanics is
 used. A score is (found − true) over the stated deviation; the root of its mean square should be 1. Ends with status 1 where that of k11, k12 or k22 is above 1.5, where a law is
-wrong in more than a tenth of the runs, or where χ² per degree of freedom is above 1.1.
+wrong in more than a quarter of the runs, or where χ² per degree of freedom is above 1.1.
 """
 import argparse
 import json
@@ -148,7 +148,7 @@ def main():
         named = sum(law in SCENARIOS[scenario][4] for law in laws)
         chi2 = float(np.mean([chi2 for *_, chi2 in runs]))
         squares, held = np.sqrt((scores**2).mean(0)), (np.abs(scores) < 1.96).mean(0)
-        is_right &= bool((squares[:3] < 1.5).all() and named >= 0.9 * given.runs and chi2 < 1.1)
+        is_right &= bool((squares[:3] < 1.5).all() and named >= 0.75 * given.runs and chi2 < 1.1)
         print(f"{scenario}: scores {np.round(squares, 2)}, 95 % intervals hold {np.round(100 * held[:3])} %, law right {named} of {given.runs}, χ² {chi2:.3f}, {(time.time() - began) / given.runs:.2f} s a run", flush=True)
     sys.exit(0 if is_right else 1)
 
