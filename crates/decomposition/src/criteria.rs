@@ -24,12 +24,12 @@ impl Judgement {
         let not_rigid = analysis.spectrum.h41.rigidity().filter(|chi2| *chi2 > NOT_RIGID);
         let agrees_with_fixture =
             MatrixElement::distinct(scalar).all(|element| agrees(analysis, fixture, &best, element));
+        let is_short = poor_fit.or(not_rigid).is_some();
         // What explains every FRF is worth more than means over lines of it.
-        let excluded = poor_fit.or(not_rigid).is_some()
-            && contradiction.is_some_and(|contradiction| contradiction.excludes_use());
+        let excluded = is_short && contradiction.is_some_and(|contradiction| contradiction.excludes_use());
         let verdict = if (fit.is_none() && whole.is_none()) || !first.is_determined() || excluded {
             Use::Unusable
-        } else if poor_fit.or(not_rigid).is_some() || contradiction.is_some() || !agrees_with_fixture {
+        } else if is_short || contradiction.is_some() || !agrees_with_fixture {
             Use::WithCare
         } else {
             Use::Sound

@@ -157,13 +157,21 @@ pub(super) fn compared(
 
 /// Laws by their evidence, the most probable first, and the coordinates of that one.
 pub(super) fn probable(mut all: Vec<Candidate>) -> (Vec<LawFit>, Vec<f64>) {
-    // Noise is inflated by what the best law leaves.
-    let best = all.iter().min_by(|a, b| a.fit.objective.total_cmp(&b.fit.objective));
-    let inflation = best.map_or(1.0, |best| best.inflation);
+    let inflation = least_inflation(all.iter());
     for candidate in &mut all {
         candidate.evidence = candidate.inflated(inflation);
     }
     ranked(all)
+}
+
+/// The law nearest to the FRFs.
+pub(super) fn nearest<'a>(all: impl Iterator<Item = &'a Candidate>) -> Option<&'a Candidate> {
+    all.min_by(|a, b| a.fit.objective.total_cmp(&b.fit.objective))
+}
+
+/// What the noise of all is inflated by: what the nearest law leaves.
+pub(super) fn least_inflation<'a>(all: impl Iterator<Item = &'a Candidate>) -> f64 {
+    nearest(all).map_or(1.0, |nearest| nearest.inflation)
 }
 
 fn ranked(mut all: Vec<Candidate>) -> (Vec<LawFit>, Vec<f64>) {

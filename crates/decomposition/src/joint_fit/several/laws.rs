@@ -6,8 +6,8 @@
 //! keeping theirs, and the one change that gains most evidence is made, once a joint.
 
 use super::super::law::{Dynamics, LawKind, coordinates};
-use super::super::laws::{Candidate, LawFit, probable};
-use super::super::problem::{Columns, Course, Fitted, Problem, Test};
+use super::super::laws::{Candidate, LawFit, least_inflation, nearest, probable};
+use super::super::problem::{Course, Fitted, Problem, Test};
 use crate::settings::laws::NEAR_LOG_EVIDENCE;
 use crate::settings::several::{FEW_STEPS, LIMIT, MOST_STEPS, NEAREST};
 use jointscope_inference::Limit;
@@ -15,8 +15,7 @@ use jointscope_inference::Limit;
 /// Laws of all joints at their optimum.
 pub(super) struct State {
     laws: Vec<Dynamics>,
-    coordinates: Vec<f64>,
-    others: Columns,
+    fitted: Fitted,
 }
 
 impl State {
@@ -27,7 +26,7 @@ impl State {
             return None;
         }
         let problem = Problem::open(test, self.laws, None);
-        let mut fitted = problem.fit(self.coordinates, Some(self.others))?;
+        let mut fitted = problem.fit(self.fitted.point.coordinates, Some(self.fitted.others))?;
         fitted.refresh(&problem)?;
         fitted.equations(&problem).covariance()?;
         Some((problem, fitted))
@@ -62,13 +61,11 @@ pub(super) fn compared(viscous: &Problem, first: &Fitted) -> (Vec<Vec<LawFit>>, 
 
 /// All joints with the one law that is most probable for all of them.
 fn alike(viscous: &Problem, first: &Fitted) -> State {
-    let as_fitted = State {
-        laws: viscous.laws.clone(),
-        coordinates: first.point.coordinates.clone(),
-        others: first.others.clone(),
-    };
+    let point = first.point.with(first.point.coordinates.clone());
+    let fitted = Fitted { point, others: first.others.clone() };
+    let as_fitted = State { laws: viscous.laws.clone(), fitted };
     let all = of_every_kind(viscous.test, &as_fitted, None);
-    let inflation = least_inflation(all.iter());
+    let inflation = least_inflation(all.iter().map(|(candidate, _)| candidate));
     let probable = all.into_iter().max_by(|a, b| a.0.inflated(inflation).total_cmp(&b.0.inflated(inflation)));
     probable.map_or(as_fitted, |(_, state)| state)
 }
@@ -79,7 +76,7 @@ fn best_change(
     current: &State,
     may_change: &[bool],
 ) -> Option<(usize, usize)> {
-    let inflation = least_inflation(all.iter().flatten());
+    let inflation = least_inflation(all.iter().flatten().map(|(candidate, _)| candidate));
     let stays = |joint: usize, candidate: &Candidate| candidate.fit.kind == current.laws[joint].kind;
     let gain = |joint: usize, candidate: &Candidate| {
         let own = all[joint].iter().find(|(own, _)| stays(joint, own));
@@ -92,12 +89,6 @@ fn best_change(
     });
     let best = changes.filter(|(.., gain)| *gain > 0.0).max_by(|a, b| a.2.total_cmp(&b.2))?;
     Some((best.0, best.1))
-}
-
-/// What the best combination leaves, as an inflation of the noise.
-fn least_inflation<'a>(all: impl Iterator<Item = &'a (Candidate, State)>) -> f64 {
-    let lowest = all.min_by(|a, b| a.0.fit.objective.total_cmp(&b.0.fit.objective));
-    lowest.map_or(1.0, |(best, _)| best.inflation)
 }
 
 /// Shapes that a law is tried from.
@@ -119,8 +110,7 @@ fn of_every_kind(test: Test, current: &State, joint: Option<usize>) -> Vec<(Cand
     let mut all: Vec<(Candidate, State)> = Vec::new();
     for kind in std::iter::once(own).chain(LawKind::ALL.into_iter().filter(|kind| *kind != own)) {
         let shapes = if kind == own { &[0.0] } else { shapes(kind) };
-        let nearest = all.iter().min_by(|a, b| a.0.fit.objective.total_cmp(&b.0.fit.objective));
-        let limit = nearest.map(|(nearest, _)| Limit {
+        let limit = nearest(all.iter().map(|(candidate, _)| candidate)).map(|nearest| Limit {
             objective: nearest.fit.objective,
             reach: 2.0 * NEAR_LOG_EVIDENCE * nearest.inflation,
             ..LIMIT
@@ -136,15 +126,11 @@ fn of_every_kind(test: Test, current: &State, joint: Option<usize>) -> Vec<(Cand
 fn converged(test: Test, joint: Option<usize>, mut all: Vec<(Candidate, State)>) -> Vec<(Candidate, State)> {
     all.sort_by(|a, b| a.0.fit.objective.total_cmp(&b.0.fit.objective));
     let least = all.first().map_or(0.0, |(nearest, _)| nearest.fit.objective);
-    for (rank, one) in all.iter_mut().enumerate() {
-        if rank < NEAREST || one.0.fit.objective - least < 2.0 * NEAR_LOG_EVIDENCE {
-            let problem = Problem::lawful(test, one.1.laws.clone(), None);
-            let again = problem.point(one.1.coordinates.clone(), None).and_then(|point| {
-                let mut fitted = Fitted { point, others: one.1.others.clone() };
-                fitted.refresh(&problem)?;
-                of_fitted(&problem, fitted, joint)
-            });
-            again.into_iter().for_each(|again| *one = again);
+    for (rank, (candidate, State { laws, fitted })) in all.iter_mut().enumerate() {
+        if rank < NEAREST || candidate.fit.objective - least < 2.0 * NEAR_LOG_EVIDENCE {
+            let problem = Problem::lawful(test, laws.clone(), None);
+            let again = fitted.refresh(&problem).and_then(|()| of_all(&problem, fitted, joint));
+            again.into_iter().for_each(|again| *candidate = again);
         }
     }
     all
@@ -160,7 +146,7 @@ fn candidate(
     limit: Option<Limit>,
 ) -> Option<(Candidate, State)> {
     let mut laws = current.laws.clone();
-    let mut rest = current.coordinates.as_slice();
+    let mut rest = current.fitted.point.coordinates.as_slice();
     let mut start = Vec::with_capacity(rest.len());
     for (place, law) in laws.iter_mut().enumerate() {
         let own = *law;
@@ -181,12 +167,12 @@ fn candidate(
     let problem = Problem::lawful(test, laws, None);
     let steps = if kind == LawKind::Constant { FEW_STEPS } else { MOST_STEPS };
     let course = Course { steps, limit, ..Course::default() };
-    let fitted = problem.fit_from(problem.point(start, None)?, Some(current.others.clone()), course)?;
-    of_fitted(&problem, fitted, joint)
+    let fitted =
+        problem.fit_from(problem.point(start, None)?, Some(current.fitted.others.clone()), course)?;
+    Some((of_all(&problem, &fitted, joint)?, State { laws: problem.laws, fitted }))
 }
 
-fn of_fitted(problem: &Problem, fitted: Fitted, joint: Option<usize>) -> Option<(Candidate, State)> {
-    let candidate = Candidate::of(problem, &fitted, joint.unwrap_or(0))?;
-    let Fitted { point, others } = fitted;
-    Some((candidate, State { laws: problem.laws.clone(), coordinates: point.coordinates, others }))
+/// What a joint's law comes to at an optimum; of all alike that of the first.
+fn of_all(problem: &Problem, fitted: &Fitted, joint: Option<usize>) -> Option<Candidate> {
+    Candidate::of(problem, fitted, joint.unwrap_or(0))
 }
