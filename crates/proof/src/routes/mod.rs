@@ -9,7 +9,6 @@
 //!
 //! A route is a module that draws a case and its truth, judges an answer by that truth, and scores what was
 //! judged; here they come together.
-
 //!
 //! Which routes there are is said once, at the end of this file; beside that a route has a count in [`Plan`].
 
