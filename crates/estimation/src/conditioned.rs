@@ -1,10 +1,11 @@
-//! A hit made ready: baselines off, faults found, windows on, spectra taken.
+//! A hit made ready: hum and baselines off, faults found, windows on, spectra taken.
 
 use jointscope_hits::{Fourier, Hit, MeasuredMotion, Response};
 use num_complex::Complex64;
 
 use crate::baseline::Drift;
 use crate::decay::left_at_end;
+use crate::hum::Hum;
 use crate::pulse::Pulse;
 use crate::settings::baseline::FEWEST_BEFORE;
 use crate::settings::overload::SAME_VALUE;
@@ -12,7 +13,7 @@ use crate::settings::pulse::FILTER_RINGING;
 use crate::settings::windows::{FORCE_WINDOW_WIDTHS, TAPER_PARTS};
 use crate::{Baseline, Fault, ForceWindow, baseline, fault};
 
-/// A hit without its baselines, and what was seen in it.
+/// A hit without hum and baselines, and what was seen in it.
 #[derive(Debug, Clone)]
 pub(crate) struct Conditioned<'a> {
     pub hit: &'a Hit,
@@ -41,19 +42,21 @@ pub(crate) fn mark_cut_off_alike(hits: &mut [Conditioned]) {
     }
 }
 
-/// The same hit with the baselines of its signals off, as the estimate takes them: for whatever else is made
-/// of hits.
-pub fn without_baselines(hit: &Hit, baseline: Baseline) -> Hit {
-    let Conditioned { force, responses, .. } = Conditioned::of(hit, baseline);
-    let responses =
-        responses.into_iter().map(|signal| Response { values: signal.values, ..signal.response.clone() });
-    let own = (hit.number(), hit.interval(), hit.start());
-    // As many finite values as before.
-    Hit::new(own.0, own.1, own.2, hit.struck().clone(), force, responses.collect())
-        .unwrap_or_else(|_| hit.clone())
+/// The same hits with hum and baselines off, as the estimate takes them: for whatever else is made of hits.
+pub fn prepared(hits: &[Hit], baseline: Baseline) -> Vec<Hit> {
+    let (all, _) = Conditioned::all(hits, baseline);
+    let prepared = |Conditioned { hit, force, responses, .. }: Conditioned| {
+        let responses =
+            responses.into_iter().map(|signal| Response { values: signal.values, ..signal.response.clone() });
+        let (number, interval, start) = (hit.number(), hit.interval(), hit.start());
+        // As many finite values as before.
+        Hit::new(number, interval, start, hit.struck().clone(), force, responses.collect())
+            .unwrap_or_else(|_| hit.clone())
+    };
+    all.into_iter().map(prepared).collect()
 }
 
-/// One response of a hit without its baseline.
+/// One response of a hit without hum and baseline.
 #[derive(Debug, Clone)]
 pub(crate) struct Signal<'a> {
     pub response: &'a Response,
@@ -67,14 +70,31 @@ pub(crate) struct Signal<'a> {
 }
 
 impl<'a> Conditioned<'a> {
-    pub(crate) fn of(hit: &'a Hit, kind: Baseline) -> Self {
-        let mut force = hit.force().to_vec();
+    /// All hits of a test; with the hum that was taken off, if there was any. `Baseline::Keep` keeps it.
+    pub(crate) fn all(hits: &'a [Hit], kind: Baseline) -> (Vec<Self>, Option<Hum>) {
+        let hum = if kind == Baseline::Keep { None } else { Hum::of(hits) };
+        let without_hum = |index: usize, signal: usize, values: &[f64]| {
+            let mut values = values.to_vec();
+            if let Some(hum) = &hum {
+                hum.take_off(index, signal, &mut values);
+            }
+            values
+        };
+        let of = |(index, hit): (usize, &'a Hit)| {
+            let responses = hit.responses().iter().enumerate();
+            let responses = responses.map(|(i, response)| without_hum(index, i + 1, &response.values));
+            Conditioned::of(hit, without_hum(index, 0, hit.force()), responses.collect(), kind)
+        };
+        (hits.iter().enumerate().map(of).collect(), hum)
+    }
+
+    /// A hit whose signals without hum are `force` and `responses`.
+    fn of(hit: &'a Hit, mut force: Vec<f64>, responses: Vec<Vec<f64>>, kind: Baseline) -> Self {
         let force_drift = baseline::remove(&mut force, kind, 0);
         let pulse = Pulse::of(&force);
         let faults = fault::faults(hit, &force, pulse.as_ref());
         let (begin, before) = pulse.map_or((0, 0), |pulse| (pulse.begin, pulse.before()));
-        let signal = |response: &'a Response| {
-            let mut values = response.values.clone();
+        let signal = |(response, mut values): (&'a Response, Vec<f64>)| {
             let drift = baseline::remove(&mut values, kind, before);
             let quiet = &values[..before.min(values.len())];
             let power = quiet.iter().map(|v| v * v).sum::<f64>() / quiet.len().max(1) as f64;
@@ -86,7 +106,7 @@ impl<'a> Conditioned<'a> {
             hit,
             pulse,
             faults,
-            responses: hit.responses().iter().map(signal).collect(),
+            responses: hit.responses().iter().zip(responses).map(signal).collect(),
             force,
             force_drift,
         }

@@ -40,8 +40,7 @@ impl Estimate {
     /// See [`EstimateError`].
     pub fn of(hits: &[Hit], options: &EstimateOptions) -> Result<Self, EstimateError> {
         check(hits, options)?;
-        let mut all: Vec<Conditioned> =
-            hits.iter().map(|hit| Conditioned::of(hit, options.baseline)).collect();
+        let (mut all, hum) = Conditioned::all(hits, options.baseline);
         mark_cut_off_alike(&mut all);
         let reports: Vec<HitReport> = all.iter().map(|hit| report(hit, options)).collect();
         let used: Vec<&Conditioned> =
@@ -60,6 +59,7 @@ impl Estimate {
         let test = Test { used: &used, spectra: &spectra, lines: &lines, alike, options };
         let excitations: Vec<Excitation> = test.struck().map(|struck| test.excitation(struck)).collect();
         let mut remarks = Remarks::of_hits(&all, &reports, options, decay);
+        remarks.of_hum(hum);
         let frfs = test.frfs(&excitations, &mut remarks)?;
         remarks.of_frfs(&frfs, &excitations, options.estimator);
         Ok(Estimate { frfs, hits: reports, excitations, decay, remarks: remarks.all })

@@ -44,6 +44,7 @@ mod decay;
 mod error;
 mod estimate;
 mod fault;
+mod hum;
 mod options;
 mod overload;
 mod plausibility;
@@ -53,7 +54,7 @@ mod remarks;
 mod report;
 mod settings;
 
-pub use conditioned::without_baselines;
+pub use conditioned::prepared;
 pub use error::EstimateError;
 pub use estimate::Estimate;
 pub use fault::{Fault, Signal};

@@ -36,7 +36,7 @@ pub enum Weighting {
     Plain,
 }
 
-/// What is taken off every signal.
+/// What is taken off every signal beside mains hum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Baseline {
     /// A constant: the mean before the hit, or, without enough samples there, of those that neither hit nor
@@ -45,7 +45,7 @@ pub enum Baseline {
     Offset,
     /// A straight line through the samples that neither the hit nor the ringing moves far.
     Drift,
-    /// Nothing.
+    /// Nothing, and no hum either.
     Keep,
 }
 

@@ -46,6 +46,13 @@ pub enum Remark {
     RingingBefore(Vec<(u32, f64)>),
     /// Baselines that drift.
     DriftingBaselines(Vec<Signal>),
+    /// Mains hum was taken off.
+    Hum {
+        /// The mains' frequency, Hz.
+        hz: f64,
+        /// Signals that had it, and the largest share of their peak that it was.
+        signals: Vec<(Signal, f64)>,
+    },
     /// The noise of the hits differs.
     UnequalNoise {
         /// By this factor.

@@ -7,6 +7,7 @@ use jointscope_spectra::{Channel, FrfPair, FrfSet};
 use crate::band::dips;
 use crate::baseline::Drift;
 use crate::conditioned::Conditioned;
+use crate::hum::Hum;
 use crate::plausibility::implausible;
 use crate::settings::remarks::{
     BIASED, DISAGREE, DRIFT_OF_FIRST_LINE, DRIFTS, LEFT_UNNOTICED, PULSE, RINGS_BEFORE, RINGS_OVER_QUIETEST,
@@ -133,6 +134,13 @@ impl Remarks {
         }
         if !drifting.is_empty() {
             self.all.push(Remark::DriftingBaselines(drifting.into_iter().collect()));
+        }
+    }
+
+    /// What hum was taken off.
+    pub(crate) fn of_hum(&mut self, hum: Option<Hum>) {
+        if let Some(Hum { hz, signals, .. }) = hum {
+            self.all.push(Remark::Hum { hz, signals });
         }
     }
 

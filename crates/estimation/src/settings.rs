@@ -32,6 +32,41 @@ pub(crate) mod baseline {
     pub(crate) const LINE_PASSES: usize = 3;
 }
 
+/// Mains hum.
+pub(crate) mod hum {
+    /// Frequencies of the world's mains, Hz.
+    pub(crate) const MAINS_HZ: [f64; 2] = [50.0, 60.0];
+    /// Relative difference from them that is looked at: grids keep to a fifth of this, and a card's clock is
+    /// better still.
+    pub(crate) const WANDERS: f64 = 0.01;
+    /// Frequencies tried in one width of what a record's end resolves: over the whole record the phase of the
+    /// mains turns by less than half a radian from one to the next.
+    pub(crate) const STEPS_IN_LINE: f64 = 16.0;
+    /// Frequencies tried between two of these about the best: the highest multiple asks for it.
+    pub(crate) const FINER: f64 = 16.0;
+    /// Multiples looked at: rectifiers show up to there.
+    pub(crate) const HARMONICS: usize = 11;
+    /// Above all of them, Hz.
+    pub(crate) const HIGHEST_HZ: f64 = 670.0;
+    /// Share of the sampling rate above which a filter falls off.
+    pub(crate) const BELOW_FILTER: f64 = 0.4;
+    /// Times the length of a record's end to which it is filled with zeros.
+    pub(crate) const PADDING: usize = 4;
+    /// Shortest quiet before a blow that can confirm a hum, s: half a period.
+    pub(crate) const LEAST_BEFORE_S: f64 = 0.01;
+    /// Fewest periods in the quiet half of a record.
+    pub(crate) const FEWEST_PERIODS_AFTER: f64 = 8.0;
+    /// Lines beside a tone, in widths of the end's own resolution, that it has to stand out of: beyond the
+    /// Hann window's main lobe.
+    pub(crate) const ASIDE: [f64; 3] = [2.5, 3.5, 5.0];
+    /// Times what lies beside it: noise alone does so on one line of many thousands.
+    pub(crate) const STANDS_OUT: f64 = 4.0;
+    /// Gain in the logarithm of the likelihood before the blows from which a tone is hum: that a tone picked
+    /// from eleven multiples at a hundred frequencies gains as much by chance has odds below one in a
+    /// thousand.
+    pub(crate) const EXPLAINS: f64 = 14.0;
+}
+
 /// What of a response is left when its record ends.
 pub(crate) mod ringing_left {
     /// Parts into which the time after the hit is cut.

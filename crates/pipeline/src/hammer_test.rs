@@ -1,8 +1,6 @@
 //! Hammer hits with the FRFs estimated from them.
 
-use jointscope_estimation::{
-    Baseline, Estimate, EstimateError, EstimateOptions, Estimator, without_baselines,
-};
+use jointscope_estimation::{Baseline, Estimate, EstimateError, EstimateOptions, Estimator, prepared};
 use jointscope_hits::Hit;
 use jointscope_spectra::{FrfSet, in_text};
 use jointscope_wording::counted;
@@ -28,11 +26,11 @@ impl HammerTest {
         Ok(HammerTest { hits: hits.to_vec(), estimate, baseline: options.baseline })
     }
 
-    /// The hits that the estimate uses, without their baselines: an offset that differs from hit to hit
-    /// changes FRFs of single hits under a window, as no law of a joint does.
+    /// The hits that the estimate uses, without hum and baselines: what differs from hit to hit changes FRFs
+    /// of single hits under a window, as no law of a joint does.
     pub(crate) fn hits_in_use(&self) -> Vec<Hit> {
-        let in_use = self.hits.iter().zip(&self.estimate.hits).filter(|(_, report)| report.used);
-        in_use.map(|(hit, _)| without_baselines(hit, self.baseline)).collect()
+        let prepared = prepared(&self.hits, self.baseline).into_iter().zip(&self.estimate.hits);
+        prepared.filter(|(_, report)| report.used).map(|(hit, _)| hit).collect()
     }
 
     /// `FRFs were estimated from the hits: H1, 9 hits at 1, 9 at 2, on 1975 lines from 0.78125 to 1543 Hz`,

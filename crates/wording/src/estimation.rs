@@ -28,6 +28,7 @@ impl Says for Remark {
             Remark::StillRinging { left, window } => still_ringing(left, *window),
             Remark::RingingBefore(hits) => ringing_before(hits),
             Remark::DriftingBaselines(signals) => drifting_baselines(signals),
+            Remark::Hum { hz, signals } => hum(*hz, signals),
             Remark::UnequalNoise { ratio, is_plain } => unequal_noise(*ratio, *is_plain),
             Remark::Disagreement { ratio, frfs } => disagreement(*ratio, frfs),
             Remark::SmallH1(struck) => format!(
@@ -74,6 +75,15 @@ fn drifting_baselines(signals: &[Signal]) -> String {
     format!(
         "the baseline of {} drifts, which shows in the lowest lines: `--detrend drift` takes a straight line off",
         names.join(", ")
+    )
+}
+
+fn hum(hz: f64, signals: &[(Signal, f64)]) -> String {
+    let share = |(signal, share): &(Signal, f64)| format!("{signal} ({} % of its peak)", percent(*share));
+    format!(
+        "mains hum of {hz:.2} Hz and its multiples, which is there before the blows, was taken off {}: look for a ground loop or a missing \
+         shield; `--detrend keep` leaves it in",
+        joined(signals.iter().map(share))
     )
 }
 

@@ -3,5 +3,6 @@
 
 mod common;
 mod faults;
+mod hum;
 mod variance;
 mod windows;
