@@ -10,6 +10,8 @@ pub(super) const FEWEST: usize = 8;
 const NO_FORCE: f64 = 1e-12;
 /// |H|² below this share of the largest counts as nothing.
 pub(super) const NOTHING: f64 = 1e-30;
+/// Times its expectation that a variance of two hits or more comes to on one line of twenty thousand.
+const MOST_OVER_FIT: f64 = 10.0;
 /// Smallest relative noise that is believed: quantisation and calibration are never better.
 pub(crate) const FLOOR: f64 = 1e-5;
 
@@ -92,7 +94,10 @@ fn fit_window(
 ) -> f64 {
     let [mut a11, mut a12, mut a22, mut b1, mut b2] = [0.0; 5];
     for i in range.filter(|&i| usable[i]) {
-        let weight = 1.0 / (fit[i] * fit[i]).max(f64::MIN_POSITIVE);
+        // Far below what a line shows no variance lies: a first fit that follows a resonance may claim so of
+        // the quiet lines beside it, which would then count above all others.
+        let expected = fit[i].max(raw[i] / MOST_OVER_FIT);
+        let weight = 1.0 / (expected * expected).max(f64::MIN_POSITIVE);
         a11 += weight;
         a12 += weight * size[i];
         a22 += weight * size[i] * size[i];

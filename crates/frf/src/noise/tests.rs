@@ -1,6 +1,7 @@
 //! Variances of FRFs against noise that is known, since it was added here: errors divided by their deviations
 //! must have a variance of one.
 
+use super::smoothing::smoothed;
 use super::*;
 use jointscope_samples::Noise;
 
@@ -41,6 +42,27 @@ fn smoothed_variances_of_few_averages_normalise_the_errors_to_one() {
         }
         let ratio = chi2 / count;
         assert!((0.93..1.07).contains(&ratio), "{averages} averages: chi2 per degree of freedom {ratio}");
+    }
+}
+
+/// Soft mounts: the first lines of the band lie below a resonance a thousand times as loud.
+#[test]
+fn quiet_lines_beside_a_loud_resonance_are_not_taken_for_known_exactly() {
+    let suspended = |line: usize| {
+        let x = line as f64 / 30.0;
+        -x * x / Complex64::new(1.0 - x * x, 2.0 * 0.005 * x)
+    };
+    let floor = 1e-3;
+    for seed in 0..100 {
+        let mut random = Noise::from_state(seed);
+        let lines: Vec<(Complex64, f64)> =
+            (1..401).map(|l| measure(&mut random, suspended(l), 4, floor, 1e-4)).collect();
+        let values: Vec<Complex64> = lines.iter().map(|l| l.0).collect();
+        let coherence: Vec<f64> = lines.iter().map(|l| l.1).collect();
+        let of_lines: Vec<f64> = lines.iter().map(|(h, c)| (1.0 - c) / (3.0 * c) * h.norm_sqr()).collect();
+        let variance = smoothed(&values, &of_lines, &coherence, &[], 4.0);
+        let least = variance.iter().copied().fold(f64::INFINITY, f64::min) / (floor / 4.0);
+        assert!(least > 0.1, "seed {seed}: {least} of the noise's variance");
     }
 }
 
