@@ -31,6 +31,8 @@ pub struct Estimate {
     pub decay: f64,
     /// What a reader of the FRFs should know.
     pub remarks: Vec<Remark>,
+    /// Neighbouring lines that tell as much as one line whose noise is its own.
+    alike: f64,
 }
 
 impl Estimate {
@@ -62,19 +64,21 @@ impl Estimate {
         remarks.of_hum(hum);
         let frfs = test.frfs(&excitations, &mut remarks)?;
         remarks.of_frfs(&frfs, &excitations, options.estimator);
-        Ok(Estimate { frfs, hits: reports, excitations, decay, remarks: remarks.all })
+        Ok(Estimate { frfs, hits: reports, excitations, decay, remarks: remarks.all, alike })
     }
 
     /// The FRFs on the lines above 0 Hz that the hammer excites at every struck point; under a window without
     /// the lowest ones, on which what is left of a baseline shows and passes for something that holds the
-    /// structure, or for AC coupling.
+    /// structure, or for AC coupling. Of lines that share their noise, under a window or by zero padding, one
+    /// stands for its neighbours: whoever weighs each for itself would be too sure by the root of their number.
     pub fn usable(&self) -> Option<FrfSet> {
         let to = self.excitations.iter().map(|e| e.usable_to).fold(f64::INFINITY, f64::min);
         let hz = self.frfs.lines().hz();
         let spacing = hz.get(1).map_or(0.0, |second| second - hz[0]);
         let windowed = LOWEST_SPACINGS * spacing + self.decay / std::f64::consts::PI;
         let from = if self.decay > 0.0 { windowed.min(MOST_LEFT_OUT * to) } else { 0.0 };
-        self.frfs.on_lines(|line| hz[line] > from && hz[line] <= to)
+        let every = self.alike.max(1.0) as usize;
+        self.frfs.on_lines(|line| hz[line] > from && hz[line] <= to && line % every == 0)
     }
 }
 

@@ -2,6 +2,8 @@
 
 use crate::common::{TWO_MODES, Test};
 use jointscope_estimation::{Estimate, EstimateOptions, Remark, ResponseWindow, Weighting};
+use jointscope_spectra::FrfSet;
+use num_complex::Complex64;
 
 /// Mean of |H − truth|²/variance over the lines from 20 to 480 Hz of `tests` tests.
 fn ratio(test: &Test, options: &EstimateOptions, tests: u64) -> f64 {
@@ -112,4 +114,42 @@ fn a_single_hit_has_neither_coherence_nor_variance_and_says_what_that_costs() {
     assert_eq!((estimate.frfs.coherence(0), estimate.frfs.variance(0)), (None, None));
     assert_eq!(estimate.frfs.averages(0), Some(1));
     assert!(estimate.remarks.iter().any(|r| matches!(r, Remark::OneHit(_))), "{:?}", estimate.remarks);
+}
+
+/// Whoever fits something smooth to the FRFs sums errors over lines: the variance of that sum against what
+/// lines of their own noise would make of it.
+fn shared(options: &EstimateOptions, pick: impl Fn(&Estimate) -> FrfSet) -> f64 {
+    let (tests, mut sum) = (60, 0.0);
+    for seed in 0..tests {
+        let test =
+            Test { seed, response_noise: vec![0.02; 4], force_noise: vec![0.0; 4], ..Test::quiet(4, 4096) };
+        let estimate = Estimate::of(&test.hits(), options).unwrap();
+        let frfs = pick(&estimate);
+        let (hz, variance) = (frfs.lines().hz(), frfs.variance(0).unwrap());
+        let lines = (0..hz.len()).filter(|&l| (20.0..480.0).contains(&hz[l]));
+        let error =
+            |l: usize| (frfs.values(0)[l] - TWO_MODES.frf(estimate.decay, hz[l])) / variance[l].sqrt();
+        let (total, count) = lines.fold((Complex64::ZERO, 0.0), |(s, n), l| (s + error(l), n + 1.0));
+        sum += total.norm_sqr() / count;
+    }
+    sum / tests as f64
+}
+
+#[test]
+fn of_lines_that_share_their_noise_under_a_window_or_by_zero_padding_one_is_used() {
+    let windowed = |decay: f64, zero_padding: u32| EstimateOptions {
+        response_window: if decay > 0.0 { ResponseWindow::Decay(decay) } else { ResponseWindow::None },
+        zero_padding,
+        ..EstimateOptions::default()
+    };
+    for (decay, padding) in [(0.0, 1), (4.0, 1), (0.0, 3)] {
+        let options = windowed(decay, padding);
+        let all = shared(&options, |estimate| estimate.frfs.clone());
+        let what = format!("decay {decay}, padding {padding}");
+        let usable = shared(&options, |estimate| estimate.usable().unwrap());
+        println!("{what}, all lines: {all:.2}");
+        assert!(all > 1.5 * usable || (decay, padding) == (0.0, 1), "{what}: all lines say as much: {all}");
+        // What is the same on all lines is of the pulse's own instant, where the window's noise is loudest.
+        check(&format!("{what}, usable lines"), usable, 0.8, 2.0);
+    }
 }
