@@ -2,15 +2,17 @@
 //!
 //! Any linear structure's FRFs are sums over modes with common poles. Where a free fit of such a sum leaves
 //! next to nothing but on few lines, and those are off in the FRFs at large, it is these lines that are
-//! wrong, and no model has to explain them.
+//! wrong, and no model has to explain them. A single wrong line is told by its neighbours; where more of them
+//! lie side by side, the fit of all lines tells.
 
 use crate::modal::recorded;
 use crate::settings::lines::contradiction::{
-    CONTRADICTS, MISFIT, MOST_BETWEEN_BREAKS, MOST_SHARE, REMAINING_SHARE, ROUNDS,
+    CONTRADICTS, MISFIT, MOST_BETWEEN_BREAKS, MOST_SHARE, NEAR_MODE, REMAINING_SHARE, ROUNDS,
 };
 use crate::{DiagnosisError, Hypothesis, Observation};
 use jointscope_fixture::Fixture;
-use jointscope_frf::breaks;
+use jointscope_frf::{breaks, lone_lines};
+use jointscope_lumped::Assembly;
 use jointscope_spectra::FrfSet;
 
 /// Bands (Hz) of lines of `frfs` that contradict all others: what a diagnosis leaves out before it begins.
@@ -27,7 +29,8 @@ pub fn contradictory_lines(fixture: &Fixture, frfs: &FrfSet) -> Result<Vec<(f64,
 /// Bands (Hz) of lines that contradict all others; none where there is nothing of the kind.
 pub(crate) fn contradictory(observation: &Observation, nominal: &Hypothesis) -> Vec<(f64, f64)> {
     let breaks = breaks(observation.frfs(), observation.weights());
-    if breaks.is_empty() {
+    let lone = lone_lines(observation.frfs(), observation.weights());
+    if breaks.is_empty() && lone.is_empty() {
         return Vec::new();
     }
     let hz = observation.lines().hz().to_vec();
@@ -41,12 +44,23 @@ pub(crate) fn contradictory(observation: &Observation, nominal: &Hypothesis) -> 
     let many =
         |wrong: &[bool]| wrong.iter().filter(|wrong| **wrong).count() as f64 > MOST_SHARE * hz.len() as f64;
     let mut wrong = vec![false; hz.len()];
-    let Some((mut part, mut modes)) = without(&wrong) else { return Vec::new() };
-    let before = modes.chi2_per_dof;
+    let whole = without(&wrong);
+    let before = whole.as_ref().map_or(f64::INFINITY, |(_, modes)| modes.chi2_per_dof);
+    let much_better = |chi2_per_dof: f64| chi2_per_dof < REMAINING_SHARE * before;
+    let single = lines_of_no_mode(&lone, &hz, nominal);
+    if single.contains(&true)
+        && !many(&single)
+        && let Some((_, modes)) = without(&single)
+        // A free fit may follow a wrong line with a mode of its own: then nothing is lost without both.
+        && (much_better(modes.chi2_per_dof) || before.max(modes.chi2_per_dof) < MISFIT)
+    {
+        return bands(&hz, &single);
+    }
     if before < MISFIT {
         return Vec::new();
     }
-    let better = |chi2_per_dof: f64| chi2_per_dof < MISFIT && chi2_per_dof < REMAINING_SHARE * before;
+    let Some((mut part, mut modes)) = whole else { return Vec::new() };
+    let better = |chi2_per_dof: f64| chi2_per_dof < MISFIT && much_better(chi2_per_dof);
     for _ in 0..ROUNDS {
         let mut sorted = modes.misfit.clone();
         sorted.sort_by(f64::total_cmp);
@@ -76,6 +90,20 @@ pub(crate) fn contradictory(observation: &Observation, nominal: &Hypothesis) -> 
         Some((_, modes)) if !many(&between) && better(modes.chi2_per_dof) => bands(&hz, &between),
         _ => Vec::new(),
     }
+}
+
+/// Which lines are lone ones at which the fixture has no mode either: the peak of one that is damped very
+/// little may be all of it that shows.
+fn lines_of_no_mode(lone: &[usize], hz: &[f64], nominal: &Hypothesis) -> Vec<bool> {
+    let mut single = vec![false; hz.len()];
+    let (Some(highest), Ok(fixture)) = (hz.last(), nominal.to_fixture()) else { return single };
+    let Ok(assembly) = Assembly::new(&fixture, *highest) else { return single };
+    let modes = assembly.natural_frequencies_hz();
+    for &line in lone {
+        let [from, to] = [line.saturating_sub(NEAR_MODE), (line + NEAR_MODE).min(hz.len() - 1)];
+        single[line] = !modes.iter().any(|mode| (hz[from]..=hz[to]).contains(mode));
+    }
+    single
 }
 
 /// Runs of wrong lines, gaps of one line closed.

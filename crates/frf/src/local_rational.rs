@@ -29,6 +29,16 @@ pub(crate) struct LocalRational {
     pole_variance: f64,
 }
 
+/// What the lines beside a line say of it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Expected {
+    pub value: Complex64,
+    /// Variance of that value for noise of variance 1.
+    pub leverage: f64,
+    /// Variance E|ε|² of the lines beside it about the function.
+    pub variance: f64,
+}
+
 /// Fits one line after another without allocation.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LocalRationalFit {
@@ -92,6 +102,37 @@ impl LocalRationalFit {
 }
 
 impl LocalRationalFit {
+    /// The value of `line` as `half` lines on either side of it have it, without itself. `None` nearer to the
+    /// ends than that, or where they do not determine it.
+    pub(crate) fn beside(
+        &mut self,
+        hz: &[f64],
+        values: &[Complex64],
+        line: usize,
+        half: usize,
+    ) -> Option<Expected> {
+        if line < half || line + half >= values.len() || 2 * half <= UNKNOWNS {
+            return None;
+        }
+        let unit = unit(hz, line, half)?;
+        let used = (line - half..line).chain(line + 1..line + half + 1);
+        let x = |i: usize| (hz[i] - hz[line]) / unit;
+        let level = used.clone().map(|i| values[i].norm_sqr()).fold(0.0, f64::max).sqrt();
+        if level <= 0.0 || !level.is_finite() {
+            return None;
+        }
+        let [b0, b1, b2, pole] = self.solved(used.clone().map(|i| (x(i), values[i] / level)))?;
+        self.columns.clear();
+        self.columns.resize(UNKNOWNS, Complex64::ZERO);
+        self.columns[0] = Complex64::ONE;
+        self.lu.solve_columns_in_place(&mut self.columns, 1);
+        let at = |x: f64| level * (b0 + (b1 + b2 * x) * x) / (1.0 + pole * x);
+        let misfit: f64 = used.map(|i| (values[i] - at(x(i))).norm_sqr()).sum();
+        let variance = misfit / (2 * half - UNKNOWNS) as f64;
+        let (value, leverage) = (at(0.0), self.columns[0].re.max(0.0));
+        (value.is_finite() && variance.is_finite()).then_some(Expected { value, leverage, variance })
+    }
+
     /// b₀, b₁, b₂ and a from values at their distances, weighted by the denominator of the pass before;
     /// leaves the last matrix factorised.
     fn solved(

@@ -64,6 +64,8 @@ pub(crate) mod contradiction {
     pub(crate) const REMAINING_SHARE: f64 = 0.3;
     /// Lines from one break to the next of what was clipped, at most.
     pub(crate) const MOST_BETWEEN_BREAKS: usize = 12;
+    /// Lines about a mode of the fixture in which a single line is not taken for wrong.
+    pub(crate) const NEAR_MODE: usize = 3;
     /// Rounds in which more of them are found: a fit that has to follow a wrong line hides its neighbours.
     pub(crate) const ROUNDS: usize = 4;
 }

@@ -174,6 +174,21 @@ fn mains_hum_is_left_out_and_nothing_is_named_for_it() {
 }
 
 #[test]
+fn single_lines_of_hum_are_left_out_and_no_others_with_them() {
+    // 50 and 150 Hz, as large as the FRF itself, at a phase of its own in every record.
+    let tone = |at: usize| Complex64::cis(2.4 * at as f64);
+    let (fixture, frfs) = disturbed(|_, value| value);
+    let hum = |at: usize, value: Complex64| match at % 400 {
+        19 | 59 => value + value.norm() * tone(at),
+        _ => value,
+    };
+    let frfs = frfs.with_values(hum);
+    let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
+    assert_eq!(diagnosis.verdict, Verdict::Consistent, "{}", told(&diagnosis));
+    assert_eq!(diagnosis.contradictory, [(50.0, 50.0), (150.0, 150.0)]);
+}
+
+#[test]
 fn the_one_record_that_is_in_g_is_named() {
     let (fixture, frfs) = disturbed(|_, value| value);
     let frfs = frfs.with_values(|at, value| if at / 400 == 2 { value / 9.80665 } else { value });
