@@ -7,6 +7,22 @@ use std::ops::Range;
 
 use crate::settings::hits::{FEWEST_IN_TAIL, TAIL_PARTS};
 
+/// The lines that are compared, Hz.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Compared<'a> {
+    /// From and to.
+    pub band: (f64, f64),
+    /// Bands within that are left out.
+    pub exclude: &'a [(f64, f64)],
+}
+
+impl Compared<'_> {
+    pub(crate) fn has(&self, hz: f64) -> bool {
+        let within = |(from, to): (f64, f64)| (from..=to).contains(&hz);
+        within(self.band) && !self.exclude.iter().any(|band| within(*band))
+    }
+}
+
 /// Signals of one length under one window.
 pub(crate) struct Windowed {
     pub window: Vec<f64>,

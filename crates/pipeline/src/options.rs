@@ -35,7 +35,11 @@ impl Default for Options {
 
 impl Options {
     pub(crate) fn nonlinear(&self) -> NonlinearOptions {
-        NonlinearOptions { band: self.diagnosis.band, exact: self.diagnosis.exact }
+        NonlinearOptions {
+            band: self.diagnosis.band,
+            exclude: self.diagnosis.exclude.clone(),
+            exact: self.diagnosis.exact,
+        }
     }
 
     /// Refuses a choice of lines that leaves none, or so few that they tell neither a mode nor a misfit from

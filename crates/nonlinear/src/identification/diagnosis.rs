@@ -11,6 +11,7 @@ use crate::settings::band::{BEYOND_BAND, BEYOND_ELASTIC, FORCE_ENDS, SAMPLING_EN
 use crate::settings::homogeneity::CHANGED;
 use crate::settings::map::{FROM_LOWEST, HARMONIC, SAMPLED_SHARE};
 use crate::settings::search::{LEAST_GAIN, SEEK_MORE, SEEK_MORE_ERROR, WORTH};
+use crate::spectra::Compared;
 use crate::{DiagnoseError, ForceStateError, ForceStateMap, SimulationError};
 use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::{BodyKind, Dof, Fixture};
@@ -38,6 +39,8 @@ pub struct Reach {
 pub struct NonlinearOptions {
     /// Band that is compared, Hz; chosen from hammer and fixture without.
     pub band: Option<(f64, f64)>,
+    /// Bands to leave out, Hz.
+    pub exclude: Vec<(f64, f64)>,
     /// Take the fixture's bare numbers as exact.
     pub exact: bool,
 }
@@ -78,6 +81,7 @@ impl NonlinearDiagnosis {
         let all = records(fixture, hits)?;
         let elastic = elastic_band(fixture, &all)?;
         let band = options.band.unwrap_or((0.0, default_highest(fixture, &all, elastic.1)));
+        let lines = Compared { band, exclude: &options.exclude };
         let references: Vec<&Record> = all.iter().collect();
         let reach = |location: JointLocation| Reach {
             joint: location.joint,
@@ -87,7 +91,7 @@ impl NonlinearDiagnosis {
         };
         let mut diagnosis = NonlinearDiagnosis {
             verdict: Verdict::Consistent,
-            homogeneity: homogeneity(&all, band.1),
+            homogeneity: homogeneity(&all, lines),
             findings: Vec::new(),
             models: None,
             held_out: None,
@@ -99,22 +103,22 @@ impl NonlinearDiagnosis {
         if diagnosis.homogeneity.p_value >= CHANGED {
             return Ok(diagnosis);
         }
-        let judged = judged(fixture, &all, (band, elastic), options.exact).ok_or(DiagnoseError::NoMotion)?;
-        diagnosis.maps = maps(&judged, &all, (band, elastic));
+        let judged = judged(fixture, &all, (lines, elastic), options.exact).ok_or(DiagnoseError::NoMotion)?;
+        diagnosis.maps = maps(&judged, &all, (lines, elastic));
         let Judged { verdict, findings, models, held_out, followed } = judged;
         Ok(NonlinearDiagnosis { verdict, findings, models: Some(models), held_out, followed, ..diagnosis })
     }
 }
 
-/// Band that is compared, and lowest and highest elastic frequency, Hz.
-type Bands = ((f64, f64), (f64, f64));
+/// Lines that are compared, and lowest and highest elastic frequency, Hz.
+type Bands<'a> = (Compared<'a>, (f64, f64));
 
 /// Searches for effects on the hits that are not held out, one after the other, and judges them; `None` for a
 /// fixture without a finite motion.
-fn judged(fixture: &Fixture, all: &[Record], (band, elastic): Bands, exact: bool) -> Option<Judged> {
+fn judged(fixture: &Fixture, all: &[Record], (lines, elastic): Bands, exact: bool) -> Option<Judged> {
     let held = held_out(all);
     let training = all.iter().enumerate().filter(|(i, _)| !held.contains(i)).map(|(_, r)| r);
-    let search = Search::new(training.collect(), band, elastic);
+    let search = Search::new(training.collect(), lines, elastic);
     let channels = all.iter().flat_map(|r| r.readings.iter().map(|(c, _)| c).chain([r.struck()]));
     let points: Vec<String> = channels.map(|channel| channel.point.clone()).collect();
     let nominal = Hypothesis::nominal(fixture, exact, &points);
@@ -167,7 +171,7 @@ fn judged(fixture: &Fixture, all: &[Record], (band, elastic): Bands, exact: bool
 fn maps(
     judged: &Judged,
     all: &[Record],
-    (band, elastic): Bands,
+    (lines, elastic): Bands,
 ) -> Vec<Result<ForceStateMap, ForceStateError>> {
     let strongest = all.iter().max_by(|a, b| a.hit.peak_force().total_cmp(&b.hit.peak_force()));
     let [.., repaired] = &judged.models;
@@ -178,7 +182,7 @@ fn maps(
     joints.dedup();
     let of_record = |record: &Record| {
         // Harmonics of the motion, as far as the sampling goes.
-        let highest = (HARMONIC * elastic.1).max(band.1).min(SAMPLED_SHARE / record.hit.interval());
+        let highest = (HARMONIC * elastic.1).max(lines.band.1).min(SAMPLED_SHARE / record.hit.interval());
         let band = (FROM_LOWEST * elastic.0, highest);
         let map = |joint: &String| ForceStateMap::of(&repaired.fixture, joint, &record.hit, band);
         joints.iter().map(map).collect()

@@ -10,7 +10,7 @@ use crate::distribution::{chi_squared_tail, f_tail};
 use crate::settings::homogeneity::{
     BLOCKS_AROUND, FEWEST_WITHIN, INDEPENDENT_IN_BLOCK, NOISE_DOUBT, SAMPLING_ERROR, WEAK_FORCE, WINDOW,
 };
-use crate::spectra::Windowed;
+use crate::spectra::{Compared, Windowed};
 use num_complex::Complex64;
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -108,14 +108,15 @@ impl Told {
     }
 }
 
-pub(crate) fn homogeneity(records: &[Record], highest_hz: f64) -> Homogeneity {
+pub(crate) fn homogeneity(records: &[Record], lines: Compared) -> Homogeneity {
+    let highest_hz = lines.band.1;
     let mut told = Told::default();
     let mut share: f64 = 1.0;
     for channel in struck_channels(records) {
         let group: Vec<&Record> = records.iter().filter(|r| *r.struck() == channel).collect();
         let Some(first) = group.first() else { continue };
         let samples = group.iter().map(|r| r.hit.samples()).min().unwrap_or(0);
-        let comparison = Comparison::new(samples, first.hit.interval(), highest_hz);
+        let comparison = Comparison::new(samples, first.hit.interval(), lines);
         share = share.min(comparison.independent);
         let alike =
             |r: &&Record| (r.hit.interval() - first.hit.interval()).abs() < 1e-9 * first.hit.interval();
@@ -169,25 +170,25 @@ struct Signal<'a> {
 }
 
 /// Hits at one point under one window.
-struct Comparison {
+struct Comparison<'a> {
     windowed: Windowed,
     power: f64,
     /// Share of the lines that are independent.
     independent: f64,
-    highest_hz: f64,
+    compared: Compared<'a>,
 }
 
-impl Comparison {
-    fn new(samples: usize, interval: f64, highest_hz: f64) -> Self {
+impl<'a> Comparison<'a> {
+    fn new(samples: usize, interval: f64, compared: Compared<'a>) -> Self {
         let decay = WINDOW / (samples as f64 * interval);
         let window = (0..samples).map(|i| (-decay * interval * i as f64).exp()).collect();
         let windowed = Windowed::new(window, interval);
         let power = windowed.power();
         let fourth: f64 = windowed.window.iter().map(|w| w.powi(4)).sum();
-        Comparison { power, independent: power * power / (samples as f64 * fourth), windowed, highest_hz }
+        Comparison { power, independent: power * power / (samples as f64 * fourth), windowed, compared }
     }
 
-    fn signal<'a>(&self, record: &'a Record, column: usize) -> Signal<'a> {
+    fn signal<'r>(&self, record: &'r Record, column: usize) -> Signal<'r> {
         let force = self.windowed.lines(record.hit.force());
         let strongest = force.iter().map(|line| line.norm()).fold(0.0, f64::max);
         let response = self.windowed.lines(&record.hit.responses()[column].values);
@@ -201,8 +202,12 @@ impl Comparison {
     fn told(&self, signals: &[Signal]) -> Told {
         let mut told = Told::default();
         let count = signals.iter().map(|s| s.force.len()).min().unwrap_or(0);
-        let within = |line: &usize| self.windowed.frequency_hz(*line) <= self.highest_hz;
+        let highest_hz = self.compared.band.1;
+        let within = |line: &usize| self.windowed.frequency_hz(*line) <= highest_hz;
         let of_line = |line: usize| {
+            if !self.compared.has(self.windowed.frequency_hz(line)) {
+                return Sums::default();
+            }
             let used: Vec<&Signal> = signals.iter().filter(|s| s.force[line].norm() > s.weakest).collect();
             self.line(&used, line).unwrap_or_default()
         };
@@ -221,7 +226,7 @@ impl Comparison {
                 told.blocks += 1.0;
             }
             for (line, sums) in lines.iter().enumerate().skip(index * length).take(length) {
-                let part = self.windowed.frequency_hz(line + 2) / self.highest_hz;
+                let part = self.windowed.frequency_hz(line + 2) / highest_hz;
                 let band = ((part * BANDS as f64) as usize).min(BANDS - 1);
                 let scaled = Sums { between: sums.between / times, within: sums.within / times, ..*sums };
                 told.bands[band].add(&scaled);

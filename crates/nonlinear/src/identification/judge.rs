@@ -75,7 +75,7 @@ pub(super) struct Judged {
     pub followed: Option<f64>,
 }
 
-impl Judgement<'_> {
+impl<'a> Judgement<'a> {
     /// Of the fixture as stated and refitted without laws, and of the best fit with laws; `None` for models
     /// without a finite motion.
     pub(super) fn of(
@@ -146,11 +146,11 @@ impl Judgement<'_> {
     /// The fit to all hits; that to the hits of the search where the others contradict them.
     fn of_all(
         &self,
-        [focus, fine]: &[Focus; 2],
+        [focus, fine]: &[Focus<'a>; 2],
         [everything, slopes]: [&View; 2],
         best: &Fit,
     ) -> Option<Fit> {
-        let seen = |focus: &Focus| View::new(&self.search.records, focus, &self.span.ends);
+        let seen = |focus: &Focus<'a>| View::new(&self.search.records, focus, &self.span.ends);
         let (trained, trained_slopes) = (seen(fine), seen(focus));
         let before = Fit::sloped(&trained, &trained_slopes, &best.hypothesis, 5)?;
         let all = Fit::sloped(everything, slopes, &before.hypothesis, 5)?;
@@ -174,7 +174,7 @@ impl Judgement<'_> {
         let records: Vec<&Record> = self.all.iter().collect();
         let reached = hypothesis
             .to_fixture()
-            .map_or(Vec::new(), |model| locations(&model, &records, BEYOND_BAND * self.search.band.1));
+            .map_or(Vec::new(), |model| locations(&model, &records, BEYOND_BAND * self.search.lines.band.1));
         let finding = |(index, (effect, step)): (usize, (Effect, &Step))| {
             let deviations: Vec<Option<f64>> = hypothesis
                 .parameters_of(index)

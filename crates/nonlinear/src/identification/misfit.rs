@@ -4,7 +4,7 @@ use super::hypothesis::Hypothesis;
 use super::records::Record;
 use crate::settings::band::BEYOND_BAND;
 use crate::settings::misfit::{ABOVE_NOISE, CUT, DECAY_BLOCK, FADING_SHARE, FORCE_ABOVE_NOISE, LINE_ERROR};
-use crate::spectra::{Windowed, oversampled_for_lines, smooth_length};
+use crate::spectra::{Compared, Windowed, oversampled_for_lines, smooth_length};
 use crate::time::kernel::{Stepper, Steps};
 use crate::time::structure::Structure;
 use jointscope_inference::{dot, each};
@@ -17,7 +17,7 @@ pub(crate) struct View<'a> {
     traces: Vec<Trace<'a>>,
     /// One record of each set-up: those of one set-up are followed by one stepper.
     setups: Vec<&'a Record>,
-    focus: Focus,
+    focus: Focus<'a>,
 }
 
 /// The part of a record that is compared.
@@ -37,11 +37,11 @@ struct Trace<'a> {
 
 /// How records are compared.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Focus {
+pub(crate) struct Focus<'a> {
     /// Decay of the window's weight, 1/s; zero for all alike.
     pub decay: f64,
-    /// Band compared, Hz.
-    pub band: (f64, f64),
+    /// Lines compared.
+    pub lines: Compared<'a>,
     /// Steps within a sampling interval.
     pub within: usize,
     /// Halvings of a step with an event.
@@ -61,7 +61,7 @@ pub(crate) struct Jacobian {
 
 impl<'a> View<'a> {
     /// The records, each up to its own end or to where it has died away.
-    pub(crate) fn new(records: &[&'a Record], focus: &Focus, ends: &[usize]) -> Self {
+    pub(crate) fn new(records: &[&'a Record], focus: &Focus<'a>, ends: &[usize]) -> Self {
         let mut setups: Vec<&Record> = Vec::new();
         for record in records {
             if !setups.iter().any(|other| other.has_setup_of(record)) {
@@ -78,7 +78,7 @@ impl<'a> View<'a> {
     /// The model ready to be stepped, for each set-up.
     fn steppers(&self, hypothesis: &Hypothesis) -> Option<Vec<Stepper>> {
         let fixture = hypothesis.to_fixture().ok()?;
-        let structure = Structure::new(&fixture, BEYOND_BAND * self.focus.band.1).ok()?;
+        let structure = Structure::new(&fixture, BEYOND_BAND * self.focus.lines.band.1).ok()?;
         let stepper = |record: &&Record| {
             let load = structure.load(record.struck()).ok()?;
             let system = structure.system(load, &record.readings, &[]).ok()?;
@@ -106,7 +106,8 @@ impl<'a> View<'a> {
 
     /// Number of real values compared.
     pub(crate) fn degrees(&self) -> f64 {
-        self.traces.iter().map(|trace| (2 * trace.weights.len() * trace.lines.len()) as f64).sum()
+        let weights = self.traces.iter().flat_map(|trace| trace.weights.iter().flatten());
+        2.0 * weights.filter(|weight| **weight > 0.0).count() as f64
     }
 
     /// χ² of the data; `None` for a hypothesis without a finite motion.
@@ -130,9 +131,9 @@ impl<'a> View<'a> {
         let residuals = self.residuals(hypothesis)?;
         let (mut difference, mut power) = (0.0, 0.0);
         for (trace, residuals) in self.traces.iter().zip(residuals) {
-            let weights = trace.weights.iter().flatten();
+            let weighted = residuals.chunks_exact(2).zip(trace.weights.iter().flatten());
             let square = |(r, w): (&[f64], &f64)| (r[0] * r[0] + r[1] * r[1]) / (w * w);
-            difference += residuals.chunks_exact(2).zip(weights).map(square).sum::<f64>();
+            difference += weighted.filter(|(_, w)| **w > 0.0).map(square).sum::<f64>();
             power += trace.power;
         }
         Some((difference / power).sqrt())
@@ -204,8 +205,8 @@ impl<'a> Trace<'a> {
             decay * fading(i, record.onset, end)
         };
         let spacing = 1.0 / (samples as f64 * interval);
-        let last = ((focus.band.1 / spacing) as usize).min(samples / 2);
-        let first = ((focus.band.0 / spacing).ceil() as usize).clamp(1, last.max(1));
+        let last = ((focus.lines.band.1 / spacing) as usize).min(samples / 2);
+        let first = ((focus.lines.band.0 / spacing).ceil() as usize).clamp(1, last.max(1));
         let mut trace = Trace {
             force: oversampled_for_lines(hit.force(), focus.within),
             windowed: Windowed::new((0..samples).map(weight).collect(), interval),
@@ -215,7 +216,7 @@ impl<'a> Trace<'a> {
             record,
             setup,
         };
-        trace.weigh();
+        trace.weigh(&focus.lines);
         trace
     }
 
@@ -225,7 +226,7 @@ impl<'a> Trace<'a> {
 
     /// Noise of a response and, through the FRF that the hit itself shows, of the force; and what no model is
     /// exact to.
-    fn weigh(&mut self) {
+    fn weigh(&mut self, compared: &Compared) {
         let energy = self.windowed.power();
         let force = self.spectrum(self.record.hit.force());
         let force_noise = self.record.force_noise.powi(2) * energy;
@@ -240,8 +241,13 @@ impl<'a> Trace<'a> {
                 };
                 own + through * force_noise + LINE_ERROR * LINE_ERROR * y.norm_sqr()
             };
-            self.weights.push(lines.iter().zip(&force).map(variance).map(|v| (2.0 / v).sqrt()).collect());
-            self.power += lines.iter().map(|y| y.norm_sqr()).sum::<f64>();
+            let counts: Vec<bool> =
+                self.lines.clone().map(|line| compared.has(self.windowed.frequency_hz(line))).collect();
+            let weights = lines.iter().zip(&force).map(variance).map(|v| (2.0 / v).sqrt());
+            self.weights
+                .push(weights.zip(&counts).map(|(w, counts)| if *counts { w } else { 0.0 }).collect());
+            self.power +=
+                lines.iter().zip(&counts).filter(|(_, c)| **c).map(|(y, _)| y.norm_sqr()).sum::<f64>();
         }
     }
 

@@ -53,7 +53,7 @@ pub(super) fn seen(
 ) -> Option<Vec<Seen>> {
     let linear = model.physics().iter().filter(|effect| !effect.kind.is_nonlinear()).cloned().collect();
     let linear = model.clone().with_physics(linear).ok()?;
-    let highest = BEYOND_BAND * focus.band.1;
+    let highest = BEYOND_BAND * focus.lines.band.1;
     let structures = [Structure::new(model, highest).ok()?, Structure::new(&linear, highest).ok()?];
     each(records, |record| Seen::of(&structures, record, locations, focus)).into_iter().collect()
 }
@@ -85,7 +85,7 @@ impl Seen {
         let samples = (record.onset + (CUT / (focus.decay * interval)).ceil() as usize).min(hit.samples());
         let weight = |i: usize| (-focus.decay * interval * (i as f64 - record.onset as f64)).exp();
         let lines = Windowed::padded((0..samples).map(weight).collect(), interval);
-        let last = (1..=samples).take_while(|line| lines.frequency_hz(*line) <= focus.band.1).last()?;
+        let last = (1..=samples).take_while(|line| lines.frequency_hz(*line) <= focus.lines.band.1).last()?;
         let band = 1..last + 1;
         let steps = Steps { interval, within: focus.within, halvings: focus.halvings };
         let across = |structure: &Structure| -> Option<Vec<(Vec<f64>, Vec<f64>)>> {
@@ -185,6 +185,7 @@ mod tests {
     use super::super::search::Search;
     use super::super::shapes::{is_like, suggestions};
     use super::*;
+    use crate::spectra::Compared;
     use crate::{RestoringLaw, simulate};
     use jointscope_fixture::{Dof, Effect};
     use jointscope_hits::Hit;
@@ -222,7 +223,8 @@ mod tests {
         let stated = two_blocks(1.0);
         let hits = struck(RestoringLaw::Cubic { stiffness3: 4e13 }.to_effect("J", Dof::Translation));
         let recorded = records(&stated, &hits).unwrap();
-        let search = Search::new(recorded.iter().collect(), (0.0, 1500.0), (200.0, 900.0));
+        let lines = Compared { band: (0.0, 1500.0), exclude: &[] };
+        let search = Search::new(recorded.iter().collect(), lines, (200.0, 900.0));
         let all = locations(&stated, &search.records, 4000.0);
         let reach = all.iter().find(|location| location.dof == Dof::Rotation).unwrap().reach;
         let nominal = Hypothesis::nominal(&stated, true, &[]);
@@ -252,7 +254,8 @@ mod tests {
             let recorded = records(&stated, &hits).unwrap();
             let recorded: Vec<&Record> = recorded.iter().collect();
             let locations = locations(&stated, &recorded, 4000.0);
-            let focus = Focus { decay: 20.0, band: (0.0, 1500.0), within: 4, halvings: 3 };
+            let lines = Compared { band: (0.0, 1500.0), exclude: &[] };
+            let focus = Focus { decay: 20.0, lines, within: 4, halvings: 3 };
             let mut found = suggestions(&stated, &recorded, &locations, &focus).unwrap();
             found.sort_by(|a, b| b.share.total_cmp(&a.share));
             let hidden = law.to_effect("J", dof);

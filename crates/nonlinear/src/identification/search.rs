@@ -14,6 +14,7 @@ use crate::settings::search::{
     LINEAR_RENEWALS, LONG, MEDIUM, RECONSTRUCTED, RENEWALS, SEARCH_HALVINGS, SHORT, START_RENEWALS,
     STEPS_IN_INTERVAL, STEPS_IN_PERIOD, WEAK_KIND,
 };
+use crate::spectra::Compared;
 use jointscope_fixture::Fixture;
 use jointscope_inference::each;
 
@@ -22,7 +23,8 @@ pub(crate) struct Search<'a> {
     pub records: Vec<&'a Record>,
     /// One of every level at every point.
     few: Vec<&'a Record>,
-    pub band: (f64, f64),
+    /// Lines compared.
+    pub lines: Compared<'a>,
     /// Period of the slowest elastic motion, s.
     period_s: f64,
     within: usize,
@@ -38,21 +40,21 @@ pub(crate) struct Span {
 }
 
 impl<'a> Search<'a> {
-    pub(super) fn new(records: Vec<&'a Record>, band: (f64, f64), elastic_hz: (f64, f64)) -> Self {
+    pub(super) fn new(records: Vec<&'a Record>, lines: Compared<'a>, elastic_hz: (f64, f64)) -> Self {
         let interval = records.iter().map(|r| r.hit.interval()).fold(0.0, f64::max);
         // Thirty steps in a period of the fastest elastic motion.
-        let within = (STEPS_IN_PERIOD * elastic_hz.1.min(band.1) * interval)
+        let within = (STEPS_IN_PERIOD * elastic_hz.1.min(lines.band.1) * interval)
             .ceil()
             .clamp(STEPS_IN_INTERVAL.0, STEPS_IN_INTERVAL.1) as usize;
         let first = |i: &usize| !records[..*i].iter().any(|earlier| earlier.is_like(records[*i]));
         let few = (0..records.len()).filter(first).map(|i| records[i]).collect();
-        Search { records, few, band, period_s: 1.0 / elastic_hz.0, within }
+        Search { records, few, lines, period_s: 1.0 / elastic_hz.0, within }
     }
 
     /// How a window of so many periods is compared; whole records without a number.
-    pub(super) fn focus(&self, periods: Option<f64>) -> Focus {
+    pub(super) fn focus(&self, periods: Option<f64>) -> Focus<'a> {
         let decay = periods.map_or(0.0, |periods| 1.0 / (periods * self.period_s));
-        Focus { decay, band: self.band, within: self.within, halvings: SEARCH_HALVINGS }
+        Focus { decay, lines: self.lines, within: self.within, halvings: SEARCH_HALVINGS }
     }
 
     /// All records, as far as they are followed.
@@ -92,7 +94,7 @@ impl<'a> Search<'a> {
     /// The kinds of effect beyond those of `base` that explain the most of the reconstructed forces, the best
     /// first.
     fn suggested(&self, fixture: &Fixture, base: &Hypothesis) -> Vec<Suggestion> {
-        let locations = locations(fixture, &self.records, BEYOND_BAND * self.band.1);
+        let locations = locations(fixture, &self.records, BEYOND_BAND * self.lines.band.1);
         let mut kinds: Vec<Suggestion> = Vec::new();
         for periods in RECONSTRUCTED {
             let focus = self.focus(Some(periods));
@@ -118,7 +120,7 @@ impl<'a> Search<'a> {
         let Some((effect, model)) = hypothesis.effects().pop().zip(hypothesis.to_fixture().ok()) else {
             return false;
         };
-        let all = locations(&model, &self.records, BEYOND_BAND * self.band.1);
+        let all = locations(&model, &self.records, BEYOND_BAND * self.lines.band.1);
         let mut own = all.iter().filter(|location| location.is_of(&effect));
         let from = RestoringLaw::of(&effect).map_or(0.0, |law| law.acts_from());
         own.next().is_some_and(|location| location.reach < from)

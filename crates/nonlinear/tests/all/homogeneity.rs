@@ -64,6 +64,35 @@ fn p_value(cubic: f64, seed: u64) -> f64 {
 }
 
 #[test]
+fn a_tone_that_comes_and_goes_is_no_change_with_strength_where_its_lines_are_excluded() {
+    let hits = hits(&storeys(0.0), 3);
+    let with_tone = |(k, hit): (usize, &Hit)| {
+        let level = 0.03 * hit.responses()[1].values.iter().map(|v| v.abs()).fold(0.0, f64::max);
+        let tone = |i: usize| {
+            let t = INTERVAL * i as f64;
+            let part = (4.0 * i as f64 / SAMPLES as f64).min(1.0);
+            let swelling = (std::f64::consts::PI * part).sin().powi(2);
+            // A machine that runs up and down within the stronger hits.
+            if k > 1 { level * swelling * (std::f64::consts::TAU * 333.0 * t).sin() } else { 0.0 }
+        };
+        let responses = hit.responses().iter().map(|response| {
+            let values = response.values.iter().enumerate().map(|(i, v)| v + tone(i)).collect();
+            Response { values, ..response.clone() }
+        });
+        let (number, force) = (hit.number(), hit.force().to_vec());
+        Hit::new(number, INTERVAL, 0.0, hit.struck().clone(), force, responses.collect()).unwrap()
+    };
+    let humming: Vec<Hit> = hits.iter().enumerate().map(with_tone).collect();
+    let p_value = |exclude: Vec<(f64, f64)>| {
+        let options = NonlinearOptions { exclude, ..NonlinearOptions::default() };
+        NonlinearDiagnosis::of(&storeys(0.0), &humming, &options).unwrap().homogeneity.p_value
+    };
+    assert!(p_value(Vec::new()) < 1e-3);
+    let excluded = p_value(vec![(233.0, 433.0)]);
+    assert!(excluded > 0.01, "{excluded}");
+}
+
+#[test]
 fn linear_hits_under_an_exponential_window_are_alike_and_those_of_a_cubic_spring_are_not() {
     let linear: Vec<f64> = (1..=20).map(|seed| p_value(0.0, seed)).collect();
     assert!(linear.iter().all(|p| *p > 0.01), "{linear:?}");
