@@ -130,7 +130,7 @@ impl Diagnosis {
         let mut parts = match &options.baseline {
             Some(baseline) => {
                 let baseline = usable.part_of_baseline(baseline)?;
-                changed_since(&fitter, &observation, baseline, (fixture, options.exact))?
+                changed_since(&fitter, &observation, baseline, fixture, options)?
             }
             None => routes::judged(&fitter, fixture, options, usable.sensors_off().is_empty())?,
         };
@@ -304,12 +304,13 @@ fn changed_since(
     fitter: &Fitter,
     observation: &Observation,
     baseline: Observation,
-    (fixture, exact): (&Fixture, bool),
+    fixture: &Fixture,
+    options: &DiagnosisOptions,
 ) -> Result<Parts, DiagnosisError> {
     if baseline.pairs() != observation.pairs() {
         return Err(DiagnosisError::Baseline);
     }
     let pairs = fitter.observation.pairs();
     let part = baseline.reduced(|_| true, |pair| pairs.contains(pair));
-    routes::since(fitter, part.unwrap_or(baseline), fixture, exact)
+    routes::since(fitter, part.unwrap_or(baseline), fixture, options)
 }

@@ -12,7 +12,7 @@ use crate::evidence::{self, explains, lacks_much};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::held_out::Division;
-use crate::modal::ModalJudgement;
+use crate::modal::{Known, ModalJudgement};
 use crate::moved_sensor::MovedSensor;
 use crate::options::{DiagnosisError, DiagnosisOptions};
 use crate::search::Search;
@@ -20,10 +20,10 @@ use crate::settings::effects::quantities::BEYOND_BELIEF;
 use crate::settings::work::shares::OF_DOUBTS;
 use crate::{Baseline, Observation};
 use by_lines::{Start, by_lines};
-use by_modes::by_modes;
+use by_modes::{by_modes, judged_by_modes};
 use jointscope_findings::Verdict;
 use jointscope_fixture::{Effect, Fixture};
-use jointscope_spectra::SpectraError;
+use jointscope_spectra::{FrfPair, SpectraError};
 use parts::Given;
 
 /// A recording before its route is chosen.
@@ -283,15 +283,24 @@ pub(crate) fn since(
     fitter: &Fitter,
     baseline: Observation,
     fixture: &Fixture,
-    exact: bool,
+    options: &DiagnosisOptions,
 ) -> Result<Parts, DiagnosisError> {
+    let exact = options.exact;
+    let division = Division::of(fitter.observation, options)?;
     let as_stated = Search::as_stated(fitter, fixture, exact).ok_or(DiagnosisError::Baseline)?;
-    let judged =
-        ModalJudgement::since(fitter, &baseline, &as_stated.nominal.hypothesis, &as_stated.candidates);
+    let since = |fitter: &Fitter, baseline: &Observation, known: Option<&Known>| {
+        let nominal = &as_stated.nominal.hypothesis;
+        ModalJudgement::since(fitter, baseline, nominal, &as_stated.candidates, known)
+    };
+    let judged = since(fitter, &baseline, None);
     let (modal, before) = judged.ok_or(DiagnosisError::Baseline)?;
     let calibrated = Fit::at(before.calibrated, &baseline).ok_or(DiagnosisError::Baseline)?;
-    let parts =
-        by_modes(Given { fitter, fixture, exact, lines_decide: false, division: None }, &as_stated, &modal);
+    let without = |part: &Fitter, known: &Known| {
+        let seen = |pair: &FrfPair| part.observation.pairs().contains(pair);
+        Some(since(part, &baseline.reduced(|_| true, seen)?, Some(known))?.0)
+    };
+    let given = Given { fitter, fixture, exact, lines_decide: false, division: division.as_ref() };
+    let parts = judged_by_modes(given, &as_stated, &modal, &without);
     let baseline = Baseline { observation: baseline, calibrated, modes: before.modes };
     Ok(Parts { baseline_error: Some(before.error), baseline: Some(baseline), ..parts })
 }

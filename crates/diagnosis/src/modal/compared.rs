@@ -96,13 +96,14 @@ impl ModalJudgement {
     }
 
     /// What has changed since a `baseline` of the same structure: the fixture is calibrated on it, its error
-    /// there is taken off, and what differs beyond repetition is searched for. `None` where the two have no
-    /// modes in common.
+    /// there is taken off, and what differs beyond repetition is searched for, as in [`ModalJudgement::of`]
+    /// among what is `known`. `None` where the two have no modes in common.
     pub(crate) fn since(
         fitter: &Fitter,
         baseline: &Observation,
         nominal: &Hypothesis,
         candidates: &[Candidate],
+        known: Option<&Known>,
     ) -> Option<(Self, Before)> {
         let Fitter { observation, settings, watch } = fitter;
         watch.stage("fitting the modes of the baseline");
@@ -129,7 +130,7 @@ impl ModalJudgement {
             candidates: &candidates,
             nominal,
             settings: &settings.modal,
-            known: None,
+            known,
             calibrated: true,
             suffices: &|_| false,
             watch: fitter.watch,

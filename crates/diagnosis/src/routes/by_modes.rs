@@ -14,11 +14,24 @@ use jointscope_findings::{HeldOut, Verdict};
 /// The diagnosis where the model's own error decides. `on_lines` is what lines made of the recording: the
 /// fixture refitted, or a search.
 pub(super) fn by_modes(given: Given, on_lines: &Search, modal: &ModalJudgement) -> Parts {
+    judged_by_modes(given, on_lines, modal, &|part, known| {
+        ModalJudgement::of(part, &on_lines.nominal.hypothesis, &on_lines.candidates, Some(known))
+    })
+}
+
+/// The same; `without` compares a part of the recording by modes, among what is known of the whole.
+pub(super) fn judged_by_modes(
+    given: Given,
+    on_lines: &Search,
+    modal: &ModalJudgement,
+    without: &dyn Fn(&Fitter, &Known) -> Option<ModalJudgement>,
+) -> Parts {
     let work = given.fitter.observation.work();
     let (modal, search) = telling_of_lines(given.fitter, on_lines, modal);
     let division = given.division.filter(|_| work.allows(JUDGEMENT_STEP));
     let held_out = division.and_then(|division| {
-        work.within_rest(OF_HELD_OUT, || judged_on_held_out(given, division, on_lines, &modal, &search))
+        let judged = || judged_on_held_out(given, division, on_lines, &modal, &search, without);
+        work.within_rest(OF_HELD_OUT, judged)
     });
     let locations = places_of_what_is_left(given, &modal, &search);
     Parts {
@@ -74,6 +87,7 @@ fn judged_on_held_out(
     on_lines: &Search,
     modal: &ModalJudgement,
     search: &Search,
+    without: &dyn Fn(&Fitter, &Known) -> Option<ModalJudgement>,
 ) -> Option<HeldOut> {
     let fitter = given.fitter;
     fitter.watch.stage("comparing by modes without what is held out");
@@ -81,9 +95,7 @@ fn judged_on_held_out(
     // Of what names nothing, only the refitted fixture is judged.
     let named = search.repaired.hypothesis.effect_count() > 0;
     let names = if named { modal.known(&fitter.settings.modal) } else { Known::default() };
-    let judged =
-        ModalJudgement::of(&blind, &on_lines.nominal.hypothesis, &on_lines.candidates, Some(&names))?;
-    let (_, blind) = judged.predicted(&blind, on_lines);
+    let (_, blind) = without(&blind, &names)?.predicted(&blind, on_lines);
     division.judge(&blind, search, fitter.observation)
 }
 

@@ -106,6 +106,10 @@ fn against_a_baseline_a_mass_is_named_with_its_size_whatever_the_model_leaves_ou
     let [low, high] = estimate.interval.unwrap();
     assert!(low <= mass && mass <= high, "{low} to {high} kg for {mass} kg");
     assert!((estimate.value / mass - 1.0).abs() < 0.1, "{} kg for {mass} kg", estimate.value);
+    // What the change did to lines that no fit saw is told as well.
+    let held_out = diagnosis.held_out.as_ref().unwrap();
+    assert!(held_out.what.len() >= 2 && held_out.same_findings == Some(true), "{held_out:?}");
+    assert!(held_out.nrmse_repaired < 0.5 * held_out.nrmse_refitted, "{held_out:?}");
 }
 
 /// Two blocks on a strip, block A on rubber, its natural frequency in the band.

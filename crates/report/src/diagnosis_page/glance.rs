@@ -6,7 +6,7 @@ use jointscope_wording::{Remarks, capitalised, effect_name, held_out_part};
 use maud::html;
 
 use super::fixture_view;
-use super::judgement::gain;
+use super::judgement::{gain, why_nothing_held_out};
 use super::subject::Subject;
 use crate::format::{NOT_DETERMINED, ends, percent, significant};
 use crate::section::{Card, Section};
@@ -120,7 +120,7 @@ fn error(subject: &Subject) -> Card {
     let told = |error: f64| format!("{} %", significant(100.0 * error, 2));
     let what: Vec<String> =
         held_out.iter().flat_map(|own| &own.what).map(|what| held_out_part(what)).collect();
-    let what = if what.is_empty() { "nothing could be held out".to_owned() } else { what.join(", ") };
+    let what = if what.is_empty() { why_nothing_held_out(diagnosis).to_owned() } else { what.join(", ") };
     match diagnosis.findings.is_empty() {
         true => Card::text(label, told(refitted)).note(format!("of the refitted fixture; {what}")),
         false => Card::text(label, format!("{} → {}", told(refitted), told(repaired)))

@@ -5,7 +5,7 @@ use crate::format::{percent, significant};
 use crate::section::{Card, Section};
 use crate::table::Table;
 use jointscope_diagnosis::{Diagnosis, HeldOut};
-use jointscope_wording::held_out_part;
+use jointscope_wording::{capitalised, held_out_part};
 
 pub(super) fn section(subject: &Subject) -> Section {
     let diagnosis = subject.diagnosis;
@@ -33,10 +33,19 @@ pub(super) fn section(subject: &Subject) -> Section {
     };
     let section = Section::new("Before and after").with(table);
     match &diagnosis.held_out {
-        None => section.paragraph(
-            "There were too few lines to hold any out of the fit: the errors above are of what was fitted.",
-        ),
+        None => section.paragraph(format!(
+            "{}: the errors above are of what was fitted.",
+            capitalised(why_nothing_held_out(diagnosis))
+        )),
         Some(held_out) => with_held_out(section, diagnosis, held_out),
+    }
+}
+
+/// Why the models were judged by nothing that no fit saw.
+pub(super) fn why_nothing_held_out(diagnosis: &Diagnosis) -> &'static str {
+    match diagnosis.stopped.is_empty() {
+        true => "there were too few lines to hold any out of the fit",
+        false => "the search ended before it came to what is held out of the fit",
     }
 }
 
