@@ -127,8 +127,9 @@ impl Diagnosis {
     /// was found leaves much of the FRFs.
     pub fn odd_record(&self) -> Option<OddRecord> {
         let [_, missed, misses] = self.nrmse();
-        let is_missed =
-            self.verdict != Verdict::Consistent && misses > LEFT * missed && self.baseline.is_none();
+        let is_missed = !matches!(self.verdict, Verdict::Consistent | Verdict::Explained)
+            && misses > LEFT * missed
+            && self.baseline.is_none();
         let Self { observation, search, .. } = self;
         let odd = || OddRecord::of(observation.pairs(), observation.values(), &search.nominal.predicted);
         is_missed.then(odd).flatten()

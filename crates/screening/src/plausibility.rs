@@ -5,7 +5,7 @@
 //! change of unit alone makes them fit, that is said.
 
 use crate::settings::plausibility::{
-    DENSITY, LEAST_MODULUS, MOST_DEPTH, SECTION_AREA, SPAN, USUAL_DENSITY, USUAL_SPAN,
+    DENSITY, LEAST_MODULUS, MOST_DEPTH, MOST_MASS, SECTION_AREA, SPAN, USUAL_DENSITY, USUAL_SPAN,
 };
 use jointscope_fixture::{BodyKind, Fixture, JointLaw};
 
@@ -37,6 +37,14 @@ pub fn implausible(fixture: &Fixture) -> Vec<Implausible> {
 
 fn judged(fixture: &Fixture) -> impl Iterator<Item = Result<(), Implausible>> {
     let bodies = fixture.bodies().iter().enumerate().map(move |(index, body)| match &body.kind {
+        BodyKind::Rigid(rigid) if rigid.mass.value > MOST_MASS => Err(Implausible {
+            place: format!("bodies/{}/mass", body.name),
+            problem: format!(
+                "a mass of {:e} kg is that of no body that is struck by a hammer",
+                rigid.mass.value
+            ),
+            advice: String::new(),
+        }),
         BodyKind::Rigid(rigid) if rigid.rotates => {
             let (Some(inertia), Some(x_cg)) = (rigid.inertia, rigid.x_cg) else { return Ok(()) };
             let points = fixture.points().iter().filter(|point| point.body == index);
@@ -197,6 +205,7 @@ mod tests {
     fn slips_of_a_unit_are_told_by_what_they_look_like() {
         for (path, value, place, advice) in [
             ("/bodies/A/mass", 1102.0, "bodies/A/mass", "grams"),
+            ("/bodies/A/mass", 1e300, "bodies/A/mass", "no body"),
             ("/bodies/A/inertia", 590.0, "bodies/A/inertia", "kg·mm²"),
             ("/points/4/x", 131.0, "points/4/x", "millimetres"),
             ("/joints/J/beam/youngs_modulus", 207.0, "joints/J/beam/youngs_modulus", "GPa"),

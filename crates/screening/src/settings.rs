@@ -108,6 +108,8 @@ pub(crate) mod plausibility {
     /// The mass of such a body over the cube of a bar as long as its radius of gyration asks for, kg/m³: of
     /// slender bars that is less than their density, of foam and of lead between these.
     pub(crate) const USUAL_DENSITY: (f64, f64) = (1.0, 1e5);
+    /// Masses above which nothing is that a hammer tests, kg.
+    pub(crate) const MOST_MASS: f64 = 1e7;
     /// Young's moduli below which nothing is that carries a structure, Pa.
     pub(crate) const LEAST_MODULUS: f64 = 5e5;
     /// Depth of a section, (12 I)^¼, over the length of its beam above which that is none.

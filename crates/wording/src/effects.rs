@@ -24,6 +24,14 @@ pub(crate) fn meaning(effect: &Effect, estimates: &[Estimate], data: &str) -> St
     filled(sentence, |key| words_of.stands_for(key), |parameter| words_of.is_sure(parameter))
 }
 
+/// What to look for on the structure, or to measure, once an effect is found.
+pub fn advice(effect: &Effect) -> &'static str {
+    let words = effect.kind.spec().words;
+    let of_effect = Sized { effect, estimates: &[], data: "" };
+    let case = words.advised.iter().find(|(case, _)| of_effect.is_case(*case));
+    case.map_or(words.advice, |(_, advice)| advice)
+}
+
 /// What is told of an effect.
 struct Sized<'a> {
     effect: &'a Effect,

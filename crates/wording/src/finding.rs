@@ -146,6 +146,7 @@ impl Says for LevelFinding {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::advice;
     use jointscope_diagnosis::FrfEvidence;
     use jointscope_fixture::{Effect, EffectKind, Place};
 
@@ -193,7 +194,7 @@ mod tests {
         let body = || Place::Body("B".into());
         let joint = || Place::Joint("J".into());
         type Case<'a> = (EffectKind, Place, Option<Dof>, &'a [f64], &'a [&'a str]);
-        let cases: [Case; 26] = [
+        let cases: [Case; 27] = [
             (
                 EffectKind::AddedMass,
                 body(),
@@ -274,6 +275,7 @@ mod tests {
                 &[1.03],
                 &["force", "1.03", "sensors that stay on"],
             ),
+            (EffectKind::ChannelGain, Place::Force, None, &[9.8062], &["force", "9.81", "as g is from m/s²"]),
             (EffectKind::ChannelDelay, Place::Response("4".into()), None, &[22e-6], &["lags", "22.00 µs"]),
             (
                 EffectKind::SensorMass,
@@ -296,6 +298,16 @@ mod tests {
         for (kind, place, dof, values, parts) in cases {
             says(&finding(kind, place, dof, values, 0.0103), parts);
         }
+    }
+
+    #[test]
+    fn a_wrong_sign_or_unit_asks_for_something_else_than_calibration() {
+        let advised = |factor: f64| {
+            advice(&Effect::new(EffectKind::ChannelGain, Place::Response("3".into()), None, &[factor]))
+        };
+        assert!(advised(0.9).contains("calibrate") && advised(10.0).contains("calibrate"));
+        assert!(advised(-1.01).contains("direction"), "{}", advised(-1.01));
+        assert!([9.81, 0.102].iter().all(|factor| advised(*factor).contains("unit")));
     }
 
     #[test]

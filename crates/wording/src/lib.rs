@@ -46,7 +46,7 @@ mod ratio;
 mod summary;
 pub mod unit;
 
-pub use effects::effect_name;
+pub use effects::{advice, effect_name};
 pub use finding::{place_and_sizes, with_fitted_size};
 pub use model_error::{ErrorInWords, error_in_words};
 pub use numbers::{capitalised, counted, listed};

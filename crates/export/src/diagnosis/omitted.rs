@@ -32,7 +32,7 @@ pub(super) fn damping(damping: &Damping) -> Option<Omitted> {
         Damping::ModalRatios { ratios, .. } => {
             let ratios: Vec<String> = ratios.iter().map(|ratio| short(ratio.value)).collect();
             (
-                format!("modal damping of the assembly, ratios {}", ratios.join(", ")),
+                format!("modal damping of the assembly without what was found, ratios {}", ratios.join(", ")),
                 "it belongs to no element: state it in the analysis (modal damping)",
             )
         }

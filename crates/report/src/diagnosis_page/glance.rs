@@ -2,7 +2,7 @@
 //! to do next; and where it sits.
 
 use jointscope_diagnosis::{Departure, Estimate, Finding, Verdict};
-use jointscope_wording::{Remarks, capitalised, effect_name, held_out_part};
+use jointscope_wording::{Remarks, advice, capitalised, effect_name, held_out_part};
 use maud::html;
 
 use super::fixture_view;
@@ -141,9 +141,9 @@ fn steps(subject: &Subject) -> Vec<String> {
         ));
     }
     let shown = &diagnosis.findings[..diagnosis.findings.len().min(SHOWN)];
-    for alike in shown.chunk_by(|a, b| advice(a) == advice(b)) {
+    for alike in shown.chunk_by(|a, b| advice(&a.effect) == advice(&b.effect)) {
         let names: Vec<String> = alike.iter().map(|finding| effect_name(&finding.effect)).collect();
-        steps.push(format!("{}: {}.", capitalised(&names.join(", ")), advice(&alike[0])));
+        steps.push(format!("{}: {}.", capitalised(&names.join(", ")), advice(&alike[0].effect)));
     }
     let elsewhere = |finding: &&Finding| finding.evidence.may_be_elsewhere();
     let several: Vec<String> = shown.iter().filter(elsewhere).map(|f| effect_name(&f.effect)).collect();
@@ -164,9 +164,4 @@ fn steps(subject: &Subject) -> Vec<String> {
         Verdict::Unexplained => Some("Look at the test first (`jointscope check`), then at the FRF and band where the misfit is largest."),
     }.map(str::to_owned));
     steps
-}
-
-/// What to look for on the structure, or to measure.
-fn advice(finding: &Finding) -> &'static str {
-    finding.effect.kind.spec().words.advice
 }
