@@ -2,6 +2,7 @@
 
 use crate::Export;
 use crate::body::Body;
+use crate::joint::without_structural;
 use crate::matrices::{KINDS, Kind};
 use crate::numbers::exact;
 use crate::parts::{Element, dof_number};
@@ -25,6 +26,7 @@ pub(crate) fn body(export: &Export) -> Body {
         }
     }
     for joint in &export.joints {
+        let joint = &without_structural(joint, &mut notes);
         for kind in KINDS {
             let Some(matrix) = kind.of(joint) else { continue };
             let option = match kind {

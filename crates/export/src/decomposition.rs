@@ -93,6 +93,8 @@ struct Estimate {
     damping: Matrix,
     /// H, for damping that does not depend on frequency.
     structural: Matrix,
+    /// Frequency that it was read at, Hz, and its covariance with K.
+    structural_at: Option<(f64, crate::Covariance)>,
     std: Option<(Matrix, Matrix)>,
     covariance: Option<crate::Covariance>,
     mass: Option<Uncertain>,
@@ -118,12 +120,13 @@ impl Estimate {
                 stiffness: symmetric(&fitted.stiffness),
                 damping: symmetric(&fitted.damping),
                 structural: [[0.0; 2]; 2],
+                structural_at: None,
                 std: Some((matrix(0), matrix(3))),
                 covariance: Some(fitted.covariance),
                 mass: fitted.mass,
             };
             if let Some(frequency) = structural_at(fitted) {
-                estimate.read_as_structural(std::f64::consts::TAU * frequency);
+                estimate.read_as_structural(frequency, &fitted.covariance);
             }
             return Ok(estimate);
         }
@@ -141,14 +144,21 @@ impl Estimate {
             stiffness: symmetric(&estimate.stiffness),
             damping: symmetric(&estimate.damping),
             structural: [[0.0; 2]; 2],
+            structural_at: None,
             std: Some((estimate.stiffness_std, estimate.damping_std)),
             covariance: None,
             mass: None,
         })
     }
 
-    /// H = ωC in place of the C that loses as much at ω: no C is written beside it, and no deviation of one.
-    fn read_as_structural(&mut self, omega: f64) {
+    /// H = ωC in place of the C that loses as much at this frequency: no C is written beside it, and no
+    /// deviation of one. `covariance` is that of K and C.
+    fn read_as_structural(&mut self, hz: f64, covariance: &crate::Covariance) {
+        let omega = std::f64::consts::TAU * hz;
+        let times = |i: usize| if i >= OF_STIFFNESS { omega } else { 1.0 };
+        let of_structural =
+            std::array::from_fn(|m| std::array::from_fn(|n| covariance[m][n] * times(m) * times(n)));
+        self.structural_at = Some((hz, of_structural));
         self.structural = self.damping.map(|row| row.map(|c| omega * c));
         self.damping = [[0.0; 2]; 2];
         self.std = self.std.map(|(stiffness, _)| (stiffness, [[0.0; 2]; 2]));
@@ -185,10 +195,7 @@ fn law_of(fitted: &FiledJoint) -> String {
             let loss = loss.map_or(String::new(), |(loss, std)| {
                 format!(", the loss factor of k11 being {} +- {}", short(loss), short(std))
             });
-            format!(
-                "; its law over frequency is {}{loss}, written as structural damping",
-                words(&follows.law)
-            )
+            format!("; its law over frequency is {}{loss}", words(&follows.law))
         }
         (Some(follows), Some(_)) if !follows.is_viscous() => format!(
             "; its law over frequency is {}, and K and C are what it has at {} Hz alone",
@@ -289,6 +296,7 @@ fn placed(
         stiffness: estimate.stiffness,
         damping: estimate.damping,
         structural: estimate.structural,
+        structural_at: estimate.structural_at,
         mass: estimate.mass.map(|mass| mass_of_ends(mass.value, ends.length)),
         std: estimate.std,
         covariance: estimate.covariance,

@@ -154,6 +154,7 @@ impl Exporter<'_> {
             stiffness: cut(matrices.stiffness),
             damping: cut(matrices.damping),
             structural: cut(matrices.structural),
+            structural_at: None,
             mass: matrices.mass,
             std: None,
             covariance: None,

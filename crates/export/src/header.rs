@@ -1,6 +1,7 @@
 //! What stands at the top of every file: origin, units, axes, nodes, matrices with their uncertainty, what is
 //! left out.
 
+use crate::joint::is_zero;
 use crate::numbers::short;
 use crate::{Export, Joint};
 use jointscope_comparison::Matrix;
@@ -52,13 +53,15 @@ fn of_joint(joint: &Joint) -> Vec<String> {
     let elements: &[(usize, usize)] = if joint.scalar { &[(0, 0)] } else { &[(0, 0), (0, 1), (1, 1)] };
     let stiffness_std = joint.std.map(|(k, _)| k);
     let damping_std = joint.std.map(|(_, c)| c);
+    let structural_std = joint.structural_std();
     let rows: [(&str, &Matrix, Option<Matrix>, &str); 3] = [
         ("k", &joint.stiffness, stiffness_std, ""),
         ("c", &joint.damping, damping_std, "*s"),
-        ("structural damping ", &joint.structural, None, ""),
+        ("structural damping ", &joint.structural, structural_std, ""),
     ];
     for (symbol, matrix, std, times) in rows {
-        if symbol.len() > 1 && crate::joint::is_zero(matrix) {
+        let other = symbol == "c" && !is_zero(&joint.structural);
+        if (symbol.len() > 1 || other) && is_zero(matrix) {
             continue;
         }
         let figure = |&(i, j): &(usize, usize)| {

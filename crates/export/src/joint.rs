@@ -1,6 +1,7 @@
 //! The matrices of a joint: its elastic centre, its 4×4 form on both ends, what its uncertainty leaves of
 //! them.
 
+use crate::numbers::short;
 use jointscope_beam::{Matrix4, from_end_stiffness};
 use jointscope_comparison::Matrix;
 use jointscope_inference::Z95;
@@ -48,6 +49,9 @@ pub struct Joint {
     pub damping: Matrix,
     /// Imaginary part of K that does not depend on frequency, N/m to N·m/rad; all zero where there is none.
     pub structural: Matrix,
+    /// Frequency at which a viscous joint in its stead loses as much, Hz, and the covariance of K and that
+    /// imaginary part, where they are known.
+    pub structural_at: Option<(f64, Covariance)>,
     /// Mass on (y, θ) of both ends, kg to kg·m², where the joint has any.
     pub mass: Option<Matrix4>,
     /// Standard deviations of K and C, where they are known.
@@ -124,6 +128,17 @@ pub(crate) fn symmetric(matrix: &Matrix) -> Matrix {
     [[a, mean], [mean, d]]
 }
 
+/// A joint as a program without structural damping takes it, what is written in its stead being said.
+pub(crate) fn without_structural(joint: &Joint, notes: &mut Vec<String>) -> Joint {
+    match joint.viscous_instead() {
+        Some((viscous, says)) => {
+            notes.push(says);
+            viscous
+        }
+        None => joint.clone(),
+    }
+}
+
 /// How far the centre of C, or of the structural damping, is from that of K.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct CentreAgreement {
@@ -169,37 +184,73 @@ impl Joint {
 
     /// Whether C acts about the centre of K, within its uncertainty.
     pub(crate) fn damping_centre(&self) -> Option<CentreAgreement> {
+        self.centre_agreement(&self.damping, |gradient| self.propagated(gradient))
+    }
+
+    /// Whether a matrix acts about the centre of K; `propagated` has the deviation for a gradient in K and in
+    /// the matrix.
+    fn centre_agreement(
+        &self,
+        matrix: &Matrix,
+        propagated: impl Fn(&[f64; 6]) -> Option<f64>,
+    ) -> Option<CentreAgreement> {
         let centre = self.centre()?;
         let [[k11, k12], _] = self.stiffness;
-        let [[c11, c12], [_, c22]] = self.damping;
+        let [[c11, c12], [_, c22]] = *matrix;
         let coupling = c12 - centre.offset * c11;
         let gradient = [k12 / (k11 * k11) * c11, -c11 / k11, 0.0, -centre.offset, 1.0, 0.0];
-        let std = self.propagated(&gradient);
+        let std = propagated(&gradient);
         let rounding = ROUNDING * (c11.abs() * c22.abs()).sqrt().max(c12.abs());
         let limit = std.map_or(0.0, |std| Z95 * std).max(rounding);
         Some(CentreAgreement { coupling, std, agrees: coupling.abs() <= limit })
     }
 
-    /// Whether the structural damping acts about the centre of K.
-    pub(crate) fn structural_shares_centre(&self) -> bool {
-        let Some(centre) = self.centre() else { return false };
-        let [[s11, s12], [_, s22]] = self.structural;
-        let scale = (s11.abs() * s22.abs()).sqrt().max(s12.abs());
-        (s12 - centre.offset * s11).abs() <= ROUNDING * scale
+    /// Whether the structural damping acts about the centre of K, within its uncertainty.
+    pub(crate) fn structural_centre(&self) -> Option<CentreAgreement> {
+        let covariance = self.structural_at.map(|(_, covariance)| covariance);
+        self.centre_agreement(&self.structural, |gradient| Some(propagated(&covariance?, gradient)))
+    }
+
+    /// The same joint with viscous damping in place of its structural damping, as much of it at the frequency
+    /// that is known, and what to say of that; `None` where there is none to replace or no such frequency.
+    pub(crate) fn viscous_instead(&self) -> Option<(Self, String)> {
+        let (hz, _) = self.structural_at.filter(|_| !is_zero(&self.structural))?;
+        let mut joint = Joint { structural: [[0.0; 2]; 2], structural_at: None, ..self.clone() };
+        for (row, structural) in joint.damping.iter_mut().zip(&self.structural) {
+            row.iter_mut().zip(structural).for_each(|(c, h)| *c += h / (std::f64::consts::TAU * hz));
+        }
+        let says = format!(
+            "joint {}: its structural damping H, which is the same at all frequencies, is written as the viscous damping H/omega that loses as much at {} Hz: more above, less below; scale it for another frequency",
+            self.name,
+            short(hz)
+        );
+        Some((joint, says))
+    }
+
+    /// Standard deviations of the structural damping, where they are known.
+    pub(crate) fn structural_std(&self) -> Option<Matrix> {
+        let (_, covariance) = self.structural_at?;
+        let std = |i: usize| covariance[i][i].max(0.0).sqrt();
+        Some([[std(3), std(4)], [std(4), std(5)]])
     }
 
     /// Standard deviation of a function of K and C with this gradient; without a covariance as if their
     /// errors were independent.
     fn propagated(&self, gradient: &[f64; 6]) -> Option<f64> {
         if let Some(covariance) = &self.covariance {
-            let product = |row: &[f64; 6]| row.iter().zip(gradient).map(|(c, g)| c * g).sum::<f64>();
-            let variance: f64 = covariance.iter().zip(gradient).map(|(row, g)| g * product(row)).sum();
-            return Some(variance.max(0.0).sqrt());
+            return Some(propagated(covariance, gradient));
         }
         let (k, c) = self.std?;
         let std = [k[0][0], k[0][1], k[1][1], c[0][0], c[0][1], c[1][1]];
         Some(std.iter().zip(gradient).map(|(s, g)| (s * g).powi(2)).sum::<f64>().sqrt())
     }
+}
+
+/// Standard deviation of a function of six numbers with this gradient.
+fn propagated(covariance: &Covariance, gradient: &[f64; 6]) -> f64 {
+    let product = |row: &[f64; 6]| row.iter().zip(gradient).map(|(c, g)| c * g).sum::<f64>();
+    let variance: f64 = covariance.iter().zip(gradient).map(|(row, g)| g * product(row)).sum();
+    variance.max(0.0).sqrt()
 }
 
 /// Deviations of K and C.

@@ -3,7 +3,7 @@
 
 use crate::Form;
 use crate::body::Body;
-use crate::joint::{about, is_zero};
+use crate::joint::{CentreAgreement, about, is_zero};
 use crate::matrices::{KINDS, Kind, Sparse};
 use crate::numbers::{nastran as real, nastran_double, short};
 use crate::parts::{Element, dof_number};
@@ -65,7 +65,7 @@ pub(crate) fn body(export: &Export, form: Option<Form>) -> Result<Body, ExportEr
 /// Whether a joint is written as a bush.
 fn bush_of(joint: &Joint, form: Option<Form>) -> Result<bool, ExportError> {
     let shares = joint.damping_centre().is_some_and(|centre| centre.agrees);
-    let structural = joint.structural_shares_centre();
+    let structural = joint.structural_centre().is_some_and(|centre| centre.agrees);
     let by_line = !joint.lines.is_empty();
     match form {
         Some(Form::Dmig) if by_line => Err(ExportError::DmigByLine),
@@ -123,11 +123,12 @@ fn bush_cards(joint: &Joint, id: &mut u64, notes: &mut Vec<String>) -> Result<St
     if !is_zero(&joint.damping) {
         let damping = about(&joint.damping, centre.offset);
         row("", "B", real(damping[0][0]), turning(damping[1][1]));
-        neglected(joint, "c12", damping, notes);
+        neglected(joint, ("c12", "N*s/rad"), joint.damping_centre(), damping, notes);
     }
     // Tables by line hold all of the joint's losses.
     if !is_zero(&joint.structural) && joint.lines.is_empty() {
         let structural = about(&joint.structural, centre.offset);
+        neglected(joint, ("h12", "N/rad"), joint.structural_centre(), structural, notes);
         let ratio = |part: f64, of: f64| if of == 0.0 { 0.0 } else { part / of };
         // With one field stated all others count as zero, so all are (PBUSH, remark 9).
         let [y, theta] =
@@ -169,11 +170,17 @@ fn place_of_centre(joint: &Joint, offset: f64, notes: &mut Vec<String>) -> [Stri
 }
 
 /// Says what a bush cannot hold, where it is not zero.
-fn neglected(joint: &Joint, what: &str, [[a, b], [_, d]]: [[f64; 2]; 2], notes: &mut Vec<String>) {
-    if let Some(std) = joint.damping_centre().and_then(|centre| centre.std).filter(|_| b != 0.0) {
+fn neglected(
+    joint: &Joint,
+    (what, unit): (&str, &str),
+    centre: Option<CentreAgreement>,
+    [[a, b], [_, d]]: [[f64; 2]; 2],
+    notes: &mut Vec<String>,
+) {
+    if let Some(std) = centre.and_then(|centre| centre.std).filter(|_| b != 0.0) {
         let share = b.abs() / (a.abs() * d.abs()).sqrt();
         notes.push(format!(
-            "joint {}: {what} about the elastic centre of K is {} +- {} N*s/rad ({} of the root of c11*c22), taken as zero",
+            "joint {}: {what} about the elastic centre of K is {} +- {} {unit} ({} of the root of 11 times 22), taken as zero",
             joint.name,
             short(b),
             short(std),

@@ -210,6 +210,53 @@ fn a_structural_joint_is_written_with_structural_damping_and_no_dashpot() {
 }
 
 #[test]
+fn programs_without_structural_damping_get_the_viscous_one_that_loses_as_much_in_the_bands_middle() {
+    let viscous = fitted();
+    let mut structural = viscous.clone();
+    structural["joint"]["law"] = json!("structural");
+    structural["joint"]["follows"] = json!({"law": "structural", "frequency": 100.0});
+    for program in [Program::Ansys, Program::Abaqus, Program::Calculix] {
+        let [viscous, structural] = [&viscous, &structural].map(|file| {
+            let export = exported(file, &ExportOptions::default()).unwrap();
+            write(&export, program, None, &[]).unwrap()
+        });
+        assert!(structural.contains("as much at 100"), "{structural}");
+        assert!(!structural.contains("c11 = 0"), "{structural}");
+        // Numbers to rounding: times ω and back.
+        let numbers = |deck: &str| -> Vec<f64> {
+            let commands = deck.lines().filter(|line| !line.starts_with(['!', '*']));
+            let fields = commands.flat_map(|line| line.split(',').map(str::to_owned).collect::<Vec<_>>());
+            fields.filter_map(|field| field.trim().parse().ok()).collect()
+        };
+        let (viscous, structural) = (numbers(&viscous), numbers(&structural));
+        assert_eq!(viscous.len(), structural.len(), "{program:?}");
+        let same = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-12 * a.abs().max(b.abs());
+        assert!(viscous.iter().zip(&structural).all(same), "{program:?}");
+    }
+}
+
+#[test]
+fn a_structural_joint_is_a_bush_where_its_losses_share_the_centre_within_their_uncertainty() {
+    let mut file = fitted();
+    file["joint"]["law"] = json!("structural");
+    file["joint"]["follows"] = json!({"law": "structural", "frequency": 100.0});
+    let has_bush = |c12_off: f64, std: f64| {
+        let mut file = file.clone();
+        let (k, mut c) = (beam(76.0, LENGTH), beam(76e-5, LENGTH));
+        (c[0][1], c[1][0]) = (c[0][1] * (1.0 + c12_off), c[1][0] * (1.0 + c12_off));
+        (file["joint"]["stiffness"], file["joint"]["damping"]) = (json!(k), json!(c));
+        let mut covariance = [[0.0; 6]; 6];
+        covariance[4][4] = (std * c[0][1]).powi(2);
+        file["joint"]["covariance"] = json!(covariance);
+        let export = exported(&file, &ExportOptions::default()).unwrap();
+        let deck = write(&export, Program::Nastran, None, &[]).unwrap();
+        deck.lines().any(|line| line.starts_with("CBUSH"))
+    };
+    assert!(has_bush(0.01, 0.02));
+    assert!(!has_bush(0.01, 0.001));
+}
+
+#[test]
 fn a_bush_with_tables_by_line_has_the_losses_of_a_structural_joint_once() {
     let mut file = fitted();
     (file["joint"]["stiffness"], file["joint"]["damping"]) =
