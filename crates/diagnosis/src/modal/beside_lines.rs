@@ -23,11 +23,15 @@ pub(crate) struct Explaining {
 }
 
 /// What the modes led to, fitted to lines, where that leaves no more than noise: the more strictly if the
-/// modes seem to need an error of the model.
+/// modes seem to need an error of the model. What will hardly come down to the noise is given up.
 pub(super) fn fitted_to_lines(fitter: &Fitter, named: &Named) -> Option<Fit> {
-    // What will hardly come down to the noise is given up.
     let noise = explained(fitter.observation, fitter.settings) * fitter.observation.degrees() as f64;
-    let fit = fitter.local(&named.fit.hypothesis, None, noise)?;
+    explaining_lines(fitter, named, noise)
+}
+
+/// The same, given up where it will hardly come below `limit`.
+fn explaining_lines(fitter: &Fitter, named: &Named, limit: f64) -> Option<Fit> {
+    let fit = fitter.local(&named.fit.hypothesis, None, limit)?;
     explains(fitter, &fit, !named.exact).then_some(fit)
 }
 
@@ -100,7 +104,9 @@ impl ModalJudgement {
 
     /// What explains the recording without any error of the model, by its modes and down to the noise of its
     /// lines: the best of those that do. Where errors of the usual size do not explain the modes either, or
-    /// these are dubious or right whatever their evidence says, lines decide alone, but more strictly.
+    /// these are dubious or right whatever their evidence says, lines decide alone, but more strictly. They
+    /// do so too among what modes have nothing against where nothing is named: of few modes, or of broad ones,
+    /// a gain or a spring to ground may be told by lines alone.
     pub(crate) fn exact(&self, fitter: &Fitter) -> Option<Explaining> {
         let by_lines = self.is_unexplained() || self.is_dubious(fitter) || self.has_right_modes();
         // What modes tell from the best is no better on lines.
@@ -108,12 +114,23 @@ impl ModalJudgement {
         let close = |named: &&Named| best - named.fit.ln < fitter.settings.modal.no_rival_within;
         let singles = self.search.singles.iter().take(fitter.settings.modal.tried);
         let all = singles.chain(&self.search.more).filter(close).chain([&self.search.best]);
-        let odds = fitter.settings.modal.odds;
-        let all: Vec<&Named> = all
-            .filter(|named| by_lines || named.exact && self.search.needs_all_of(named, odds.ln()))
-            .collect();
-        let explaining =
-            |named: &&Named| Some(Explaining { fit: fitted_to_lines(fitter, named)?, is_sure: named.exact });
+        let odds = fitter.settings.modal.odds.ln();
+        let nothing = self.search.best.names.is_empty().then_some(self.search.none.ln);
+        let asked = |named: &&Named| {
+            by_lines
+                || named.exact && self.search.needs_all_of(named, odds)
+                || nothing.is_some_and(|none| named.fit.ln - none > odds)
+        };
+        let all: Vec<&Named> = all.filter(asked).collect();
+        // Broad modes lead to where lines are far from their optimum yet: the foremost has all the time.
+        let is_foremost = |named: &Named| self.search.singles.first().is_some_and(|f| f.names == named.names);
+        let explaining = |named: &&Named| {
+            let fit = match is_foremost(named) {
+                true => explaining_lines(fitter, named, f64::INFINITY),
+                false => fitted_to_lines(fitter, named),
+            };
+            Some(Explaining { fit: fit?, is_sure: named.exact })
+        };
         let cost = |found: &Explaining| cost(fitter, &found.fit, 1.0);
         // More effects than explain the lines are for the lines to ask for.
         let most = all.iter().map(|named| named.names.len()).max().unwrap_or(0);
