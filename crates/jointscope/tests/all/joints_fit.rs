@@ -276,6 +276,25 @@ fn a_joint_that_relaxes_is_told_from_the_viscous_one_beside_it() {
 }
 
 #[test]
+fn two_joints_that_are_structural_both_have_that_law_and_none_takes_the_blame_for_the_other() {
+    let structural = |fixture: Fixture| {
+        let mut value = fixture.to_value();
+        value["damping"] = serde_json::json!({ "loss_factor": 0.03 });
+        for joint in ["J", "K"] {
+            value["joints"][joint].as_object_mut().unwrap().remove("damping");
+        }
+        Fixture::from_value(&value).unwrap()
+    };
+    let truth = structural(fixture(Shape::Chain, ""));
+    let frfs = recorded(&truth, &mut Noise::new(9), 0.002, &TWELVE);
+    let options = JointFitOptions { laws: true, ..JointFitOptions::default() };
+    let fit = fit_joints(&fixture(Shape::Chain, ""), &frfs, None, options).unwrap();
+    let kinds: Vec<LawKind> = fit.joints.iter().map(|joint| joint.fit.laws[0].kind).collect();
+    assert_eq!(kinds, [LawKind::Structural, LawKind::Structural]);
+    assert!((0.9..1.1).contains(&fit.joints[0].fit.chi2_per_dof), "{}", fit.joints[0].fit.chi2_per_dof);
+}
+
+#[test]
 fn a_cable_from_block_to_block_past_the_joints_is_in_the_fit() {
     let cable = r#"{ "kind": "bypass", "place": "A/C", "x_from": -0.04, "x_to": 0.28, "stiffness": 4e4, "damping": 0 }"#;
     let with_cable = with_effect(&fixture(Shape::Chain, ""), cable);

@@ -324,6 +324,25 @@ fn named(truth: &Truth, count: u64, seed: u64) -> usize {
     (0..count).filter(is_named).count()
 }
 
+/// With noise as small the nearest law without mass gains nothing over the viscous one.
+#[test]
+fn a_structural_joint_with_a_mass_has_its_law_in_quiet_tests_too() {
+    let k = [[2.4e6, -8.4e4], [-8.4e4, 4.1e3]];
+    let losses = k.map(|row| row.map(|element| 0.03 * element));
+    let none = [[0.0; 2]; 2];
+    let truth =
+        Truth { kind: LawKind::Structural, stiffness: k, losses, change: none, shape: 1.0, mass: 0.03 };
+    let analyst = fixture(&Case::ordinary(), "");
+    for seed in 0..4 {
+        let blocks = drawn_within_tolerance(&analyst, &mut generator(seed)).unwrap();
+        let frfs = Noise::new(seed).on(&truth.recorded(&blocks), 0.001);
+        let fit = fit(&analyst, &frfs, true);
+        let law = fit.law().unwrap();
+        assert!(truth.is(law), "seed {seed}: {} at chi2 {}", law.name(), fit.chi2_per_dof);
+        assert!((0.9..1.1).contains(&fit.chi2_per_dof), "seed {seed}: {}", fit.chi2_per_dof);
+    }
+}
+
 #[test]
 fn a_joint_with_a_mass_and_no_losses_is_named_as_one() {
     let k = [[2.4e6, -8.4e4], [-8.4e4, 4.1e3]];

@@ -1,8 +1,9 @@
 //! The tests of what physics allows: reciprocity, definiteness, passivity.
 
 use super::{Case, EIGHT, TESTS, fit, fixture, from_uniform, lines, recorded, report, run};
-use jointscope::decomposition::{Relation, Sides, decompose};
+use jointscope::decomposition::{DecompositionError, JointFitOptions, Relation, Sides, decompose, fit_joint};
 use jointscope::linalg::Matrix2;
+use jointscope::lumped::nominal_stiffness;
 use jointscope::spectra::{FrfForm, FrfSet};
 use jointscope_samples::Noise;
 use num_complex::Complex64;
@@ -94,4 +95,24 @@ fn damping_that_would_give_out_energy_is_held_where_it_just_gives_out_none() {
     let c = fit.damping;
     let (diagonal, coupled) = (c.at(0, 0) * c.at(1, 1), c.at(0, 1) * c.at(1, 0));
     assert!(c.at(0, 0) >= 0.0 && (diagonal - coupled).abs() < 1e-6 * diagonal, "{c:?}");
+}
+
+#[test]
+fn a_recording_of_something_else_has_no_joint() {
+    let analyst = fixture(&Case::ordinary(), "");
+    let mut noise = Noise::new(12);
+    let frfs = recorded(&analyst, &mut noise, 0.01, &EIGHT);
+    let sides = Sides::of(&analyst, None).unwrap();
+    let fitted = |frfs: &FrfSet| {
+        let spectrum = decompose(frfs, &sides, Relation::Exact).unwrap();
+        let nominal = nominal_stiffness(&sides.joint().law, sides.length());
+        fit_joint(frfs, &sides, spectrum.scalar, None, nominal, JointFitOptions::default())
+    };
+    assert!(fitted(&frfs).is_ok());
+    // As large, and of no modes at all.
+    let drawn = frfs.all_values().iter().map(|value| noise.complex(2.0 * value.norm_sqr()));
+    let drawn: Vec<Complex64> = drawn.collect();
+    let other = frfs.clone().with_values(|at, _| drawn[at]);
+    let error = fitted(&other).unwrap_err();
+    assert!(matches!(error, DecompositionError::NoFit(_)), "{error}");
 }
