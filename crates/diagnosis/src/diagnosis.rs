@@ -243,13 +243,19 @@ impl Diagnosis {
         })
     }
 
-    /// The same, or without findings where the FRFs were estimated and the fixture as refitted explains them,
-    /// none of its quantities far off.
+    /// The same, or without findings where the FRFs were estimated, the fixture as refitted explains them,
+    /// none of its quantities far off, and what was found gains little over that, or is what a record's end
+    /// or its baseline make of FRFs too: a window, or AC coupling.
     fn within_estimates(self, options: &DiagnosisOptions) -> Self {
-        let explains_all = options.estimated
-            && self.refitted.0 < options.settings.evidence.explained.0
-            && !has_departed(&self.stated[0]);
-        if explains_all { self.without_findings() } else { self }
+        let evidence = &options.settings.evidence;
+        let explains_all =
+            options.estimated && self.refitted.0 < evidence.explained.0 && !has_departed(&self.stated[0]);
+        let gain = self.search.refitted.objective - self.search.repaired.objective;
+        let imitated = |finding: &Finding| {
+            matches!(finding.effect.kind, EffectKind::ExponentialWindow | EffectKind::ChannelHighpass)
+        };
+        let is_little = gain < evidence.little_of_estimates || self.findings.iter().all(imitated);
+        if explains_all && is_little { self.without_findings() } else { self }
     }
 
     /// The largest probability of a finding.

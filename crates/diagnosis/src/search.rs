@@ -144,9 +144,10 @@ impl Search {
         explained.then(|| Search { candidates: self.candidates.clone(), ..found })
     }
 
-    /// The same, the fixture refitted from elsewhere too.
+    /// The same, the fixture refitted from elsewhere too, with all the time that takes: from where broad modes
+    /// lead to, lines may have far to go.
     pub(crate) fn refitted_from(self, fitter: &Fitter, start: &Hypothesis) -> Self {
-        let found = fitter.local(start, None, self.refitted.objective);
+        let found = fitter.local(start, None, f64::INFINITY);
         match found.filter(|fit| fit.objective < self.refitted.objective) {
             Some(refitted) => Search { repaired: refitted.clone(), refitted, ..self },
             None => self,

@@ -155,6 +155,20 @@ fn what_hardly_shows_is_not_named_where_frfs_were_estimated_from_hits() {
     assert!(estimated.findings.is_empty() && estimated.verdict == Verdict::Consistent);
 }
 
+#[test]
+fn a_gain_of_a_twentieth_is_named_of_hits_though_the_noise_would_hide_it() {
+    let fixture = believed([0.004, 0.004]);
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let low = on(EffectKind::ChannelGain, Place::Response("4".into()), &[0.95]);
+    let noisy = HammerSetup { noise_response: 0.04, ..hammer(22) };
+    let frfs = measured(&fixture, vec![low], (&four_pairs(), &lines), &noisy);
+    let options = DiagnosisOptions { estimated: true, ..DiagnosisOptions::default() };
+    let diagnosis = Diagnosis::of(&fixture, &frfs, &options).unwrap();
+    let [found] = &diagnosis.findings[..] else { panic!("{}", told(&diagnosis)) };
+    assert!(diagnosis.refitted.0 < 1.2, "{:?}", diagnosis.refitted);
+    assert!(found.effect.kind == EffectKind::ChannelGain && (found.effect.value(0) - 0.95).abs() < 0.02);
+}
+
 /// A test with nothing left out, its values changed on lines.
 fn disturbed(change: impl Fn(usize, Complex64) -> Complex64) -> (Fixture, FrfSet) {
     let fixture = believed([0.004, 0.004]);
