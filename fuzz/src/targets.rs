@@ -97,6 +97,7 @@ pub fn estimation(bytes: &[u8]) {
     let options = EstimateOptions {
         estimator: [Estimator::H1, Estimator::H2, Estimator::Hv][usize::from(choice % 3)],
         weighting: [Weighting::Auto, Weighting::Plain][usize::from(choice >> 2 & 1)],
+        unbiased: choice >> 1 & 1 == 1,
         baseline: [Baseline::Offset, Baseline::Drift, Baseline::Keep][usize::from((choice >> 3) % 3)],
         force_window: match byte() {
             0 => ForceWindow::None,

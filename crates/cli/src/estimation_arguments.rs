@@ -47,7 +47,13 @@ const BASELINES: [(&str, Baseline); 3] =
     [("offset", Baseline::Offset), ("drift", Baseline::Drift), ("keep", Baseline::Keep)];
 
 impl EstimationArguments {
-    /// The arguments as options of the estimate, `response_window` where they state none.
+    /// The arguments as options of FRFs that a model is held against.
+    pub(crate) fn for_models(&self) -> EstimateOptions {
+        let EstimateOptions { response_window, unbiased, .. } = EstimateOptions::for_models();
+        EstimateOptions { unbiased, ..self.options(response_window) }
+    }
+
+    /// The arguments as options of the textbook's estimate, `response_window` where they state none.
     pub(crate) fn options(&self, response_window: ResponseWindow) -> EstimateOptions {
         EstimateOptions {
             estimator: self.estimator,
@@ -56,6 +62,7 @@ impl EstimationArguments {
             force_window: self.force_window.unwrap_or_default(),
             response_window: self.response_window.unwrap_or(response_window),
             zero_padding: self.zero_padding,
+            unbiased: false,
             keep: self.keep.clone(),
             reject: self.reject.clone(),
         }

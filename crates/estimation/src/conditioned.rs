@@ -130,16 +130,10 @@ impl<'a> Conditioned<'a> {
         decay: f64,
     ) -> Spectra {
         let interval = self.hit.interval();
-        let begin = self.window_begin();
-        let exponential = |i: usize| match i.checked_sub(begin) {
-            Some(after) if decay > 0.0 => (-decay * interval * after as f64).exp(),
-            _ => 1.0,
-        };
+        let exponential = |i: usize| self.exponential(i, decay);
         let window = self.force_window(force_window);
-        let force = transform.of((0..self.force.len()).map(|i| {
-            let factor = window.map_or(1.0, |(end, taper)| one_then_cosine(i, end, taper));
-            self.force[i] * factor * exponential(i)
-        }));
+        let force = (0..self.force.len()).map(|i| self.force[i] * faded(window, i) * exponential(i));
+        let force = transform.of(force);
         let responses = self.responses.iter().map(|signal| {
             let mut spectrum =
                 transform.of(signal.values.iter().enumerate().map(|(i, v)| v * exponential(i)));
@@ -172,14 +166,26 @@ impl<'a> Conditioned<'a> {
         Some((pulse.begin + flat, (flat / TAPER_PARTS).max(1)))
     }
 
-    /// Share of the record that the force window lets pass.
-    pub(crate) fn force_window_share(&self, window: ForceWindow) -> f64 {
-        match self.force_window(window) {
-            None => 1.0,
-            // The mean square of half a cosine's flank is 3/8.
-            Some((end, taper)) => ((end as f64 + 0.375 * taper as f64) / self.force.len() as f64).min(1.0),
+    /// Exponential window of a decay, 1/s, at a sample.
+    fn exponential(&self, i: usize, decay: f64) -> f64 {
+        match i.checked_sub(self.window_begin()) {
+            Some(after) if decay > 0.0 => (-decay * self.hit.interval() * after as f64).exp(),
+            _ => 1.0,
         }
     }
+
+    /// Power that the force's noise adds to every line of its spectrum under these windows, N².
+    pub(crate) fn force_noise(&self, window: ForceWindow, decay: f64) -> f64 {
+        let deviation = self.pulse.map_or(0.0, |pulse| pulse.noise);
+        let window = self.force_window(window);
+        let passed = (0..self.force.len()).map(|i| (faded(window, i) * self.exponential(i, decay)).powi(2));
+        deviation * deviation * passed.sum::<f64>()
+    }
+}
+
+/// The force window, which has its flat part's last sample and the samples of its taper, at a sample.
+fn faded(window: Option<(usize, usize)>, i: usize) -> f64 {
+    window.map_or(1.0, |(end, taper)| one_then_cosine(i, end, taper))
 }
 
 /// 1 up to `end`, then half a cosine over `taper` samples down to 0.

@@ -9,10 +9,12 @@ use crate::average::{Averaged, Pair, averaged, variance_of_unequal_hits, weights
 use crate::band::last_usable;
 use crate::conditioned::{Conditioned, Spectra, Transform, mark_cut_off_alike};
 use crate::remarks::Remarks;
+use crate::settings::force_noise::MOST_NOISE_OF_FORCE;
 use crate::settings::hits::{FEWEST_SAMPLES, SAME_INTERVAL};
 use crate::settings::windows::{LEFT_BY_WINDOW, LOWEST_SPACINGS, MOST_LEFT_OUT};
 use crate::{
-    EstimateError, EstimateOptions, Excitation, ForceWindow, HitReport, Remark, ResponseWindow, Weighting,
+    EstimateError, EstimateOptions, Estimator, Excitation, ForceWindow, HitReport, Remark, ResponseWindow,
+    Weighting,
 };
 
 /// FRFs of a hammer test, and what was seen on the way to them.
@@ -58,12 +60,13 @@ impl Estimate {
         let step = 1.0 / (hits[0].interval() * transform.length() as f64);
         let lines = SpectralLines::even(0.0, step, transform.length() / 2 + 1)?;
         let alike = lines_alike(samples, transform.length(), decay * hits[0].interval());
-        let test = Test { used: &used, spectra: &spectra, lines: &lines, alike, options };
+        let force_noise = used.iter().map(|hit| hit.force_noise(options.force_window, decay)).collect();
+        let test = Test { used: &used, spectra: &spectra, force_noise, lines: &lines, alike, options };
         let excitations: Vec<Excitation> = test.struck().map(|struck| test.excitation(struck)).collect();
         let mut remarks = Remarks::of_hits(&all, &reports, options, decay);
         remarks.of_hum(hum);
         let frfs = test.frfs(&excitations, &mut remarks)?;
-        remarks.of_frfs(&frfs, &excitations, options.estimator);
+        remarks.of_frfs(&frfs, &excitations, options);
         Ok(Estimate { frfs, hits: reports, excitations, decay, remarks: remarks.all, alike })
     }
 
@@ -181,6 +184,8 @@ fn lines_alike(samples: usize, length: usize, decay: f64) -> f64 {
 struct Test<'a> {
     used: &'a [&'a Conditioned<'a>],
     spectra: &'a [Spectra],
+    /// Power that the force's noise adds to every line of each hit, N².
+    force_noise: Vec<f64>,
     lines: &'a SpectralLines,
     /// Neighbouring lines whose noise tells as much as one line's of its own.
     alike: f64,
@@ -225,7 +230,7 @@ impl<'a> Test<'a> {
         let power: Vec<f64> = (0..self.lines.len())
             .map(|line| hits.iter().map(|&i| self.spectra[i].force[line].norm_sqr()).sum::<f64>() / count)
             .collect();
-        let noise = hits.iter().map(|&i| self.force_noise(i)).sum::<f64>() / count;
+        let noise = hits.iter().map(|&i| self.force_noise[i]).sum::<f64>() / count;
         let last = last_usable(&power);
         let weakest = power[1.min(last)..=last].iter().copied().fold(f64::INFINITY, f64::min);
         let interval = self.used[hits[0]].hit.interval();
@@ -237,14 +242,6 @@ impl<'a> Test<'a> {
             usable_to: self.lines.hz()[last],
             h1_bias: if weakest > 0.0 { (noise / weakest).min(1.0) } else { 1.0 },
         }
-    }
-
-    /// Power that the force's noise adds to every line of a hit's spectrum, N².
-    fn force_noise(&self, hit: usize) -> f64 {
-        let conditioned = self.used[hit];
-        let deviation = conditioned.pulse.map_or(0.0, |pulse| pulse.noise);
-        let share = conditioned.force_window_share(self.options.force_window);
-        deviation * deviation * conditioned.force.len() as f64 * share
     }
 
     fn frfs(&self, excitations: &[Excitation], remarks: &mut Remarks) -> Result<FrfSet, EstimateError> {
@@ -318,6 +315,17 @@ impl<'a> Test<'a> {
             true => (0..n).map(|line| variance_of_unequal_hits(&pairs, &equal, line)).collect(),
             false => of_lines(&found.values, &found.coherence, found.averages),
         };
+        if self.options.unbiased && self.options.estimator == Estimator::H1 {
+            // A ratio of single spectra is right in the mean, and of n hits each is one in n of its own sum.
+            let shared = 1.0 - 1.0 / hits.len() as f64;
+            let noise: f64 = hits.iter().zip(weights).map(|(&(i, _), w)| w * self.force_noise[i]).sum();
+            let noise = shared * noise;
+            for line in 1..n {
+                let factor = 1.0 / (1.0 - (noise / sums[line].force).min(MOST_NOISE_OF_FORCE));
+                found.values[line] *= factor;
+                found.variance[line] *= factor * factor;
+            }
+        }
         remarks.of_weights(&by_noise, is_plain);
         if hits.len() > 1 {
             let scatter = self.scatter_over_noise(&hits, weights, &sums[..=last]);
@@ -337,7 +345,7 @@ impl<'a> Test<'a> {
                 return None;
             }
             response_noise += weight * signal.before? * signal.values.len() as f64;
-            force_noise += weight * self.force_noise(i);
+            force_noise += weight * self.force_noise[i];
         }
         let ratio = |sum: &Averaged| {
             let size = sum.cross.norm_sqr() / (sum.force * sum.force);

@@ -74,6 +74,19 @@ pub enum ResponseWindow {
     Decay(f64),
 }
 
+impl EstimateOptions {
+    /// FRFs that a model is held against: H1 without the bias of the force's noise, under an exponential
+    /// window where a record ends before the motion does.
+    pub fn for_models() -> Self {
+        EstimateOptions {
+            response_window: ResponseWindow::Auto,
+            zero_padding: 1,
+            unbiased: true,
+            ..EstimateOptions::default()
+        }
+    }
+}
+
 /// How FRFs are made of hits. The default is the textbook's: H1, no windows, no zero padding, constants taken
 /// off.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -90,6 +103,9 @@ pub struct EstimateOptions {
     pub response_window: ResponseWindow,
     /// Records are filled with zeros to so many times their length; 0 and 1 are none.
     pub zero_padding: u32,
+    /// Whether the power that the force's noise adds to the denominator of H1 is taken off, as the samples
+    /// apart from the blow show it: H1 is then right with noise on both channels.
+    pub unbiased: bool,
     /// Numbers of hits to use whatever is wrong with them.
     pub keep: Vec<u32>,
     /// Numbers of hits to leave out.

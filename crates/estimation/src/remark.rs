@@ -67,8 +67,13 @@ pub enum Remark {
         /// In these FRFs.
         frfs: Vec<FrfPair>,
     },
-    /// The force's noise makes H1 too small: struck points, and by what share at the most.
-    SmallH1(Vec<(Channel, f64)>),
+    /// The force's noise makes H1 too small.
+    SmallH1 {
+        /// Struck points, and by what share at the most.
+        struck: Vec<(Channel, f64)>,
+        /// Whether that was taken off.
+        taken_off: bool,
+    },
     /// The force's spectrum dips.
     ForceDips {
         /// At this struck point.

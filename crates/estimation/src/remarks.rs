@@ -161,7 +161,7 @@ impl Remarks {
     }
 
     /// What only the finished FRFs tell.
-    pub(crate) fn of_frfs(&mut self, frfs: &FrfSet, excitations: &[Excitation], estimator: Estimator) {
+    pub(crate) fn of_frfs(&mut self, frfs: &FrfSet, excitations: &[Excitation], options: &EstimateOptions) {
         if self.noise_ratio > 1.0 {
             self.all.push(Remark::UnequalNoise { ratio: self.noise_ratio, is_plain: self.is_plain });
         }
@@ -169,10 +169,10 @@ impl Remarks {
             let frfs = std::mem::take(&mut self.scatter);
             self.all.push(Remark::Disagreement { ratio: self.worst_scatter, frfs });
         }
-        let biased = excitations.iter().filter(|e| e.h1_bias > BIASED && estimator == Estimator::H1);
+        let biased = excitations.iter().filter(|e| e.h1_bias > BIASED && options.estimator == Estimator::H1);
         let biased: Vec<(Channel, f64)> = biased.map(|e| (e.struck.clone(), e.h1_bias)).collect();
         if !biased.is_empty() {
-            self.all.push(Remark::SmallH1(biased));
+            self.all.push(Remark::SmallH1 { struck: biased, taken_off: options.unbiased });
         }
         for excitation in excitations {
             self.of_dips(excitation, frfs.lines().hz());

@@ -138,6 +138,12 @@ pub(crate) mod windows {
     pub(crate) const MOST_LEFT_OUT: f64 = 0.1;
 }
 
+/// Noise of the force.
+pub(crate) mod force_noise {
+    /// Share of the force's power on a line that may be taken off as its noise: of more nothing is known.
+    pub(crate) const MOST_NOISE_OF_FORCE: f64 = 0.5;
+}
+
 /// Which lines the hammer excites.
 pub(crate) mod band {
     /// Power below this share of the largest excites too little: 20 dB.

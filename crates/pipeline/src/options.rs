@@ -2,7 +2,7 @@
 
 use crate::Error;
 use jointscope_diagnosis::DiagnosisOptions;
-use jointscope_estimation::{EstimateOptions, ResponseWindow};
+use jointscope_estimation::EstimateOptions;
 use jointscope_nonlinear::NonlinearOptions;
 use jointscope_spectra::FrfSet;
 
@@ -21,15 +21,13 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// All lines and FRFs; FRFs by H1, under an exponential window where a record ends before the motion
-    /// does.
+    /// All lines and FRFs; FRFs of hits as models ask for them.
     fn default() -> Self {
-        let estimate = EstimateOptions {
-            response_window: ResponseWindow::Auto,
-            zero_padding: 1,
-            ..EstimateOptions::default()
-        };
-        Options { diagnosis: DiagnosisOptions::default(), estimate, as_stated: false }
+        Options {
+            diagnosis: DiagnosisOptions::default(),
+            estimate: EstimateOptions::for_models(),
+            as_stated: false,
+        }
     }
 }
 

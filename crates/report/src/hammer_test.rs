@@ -114,7 +114,7 @@ fn spectrum(test: &HammerTest, excitation: &Excitation) -> Plot {
         .shaded("lines in use", hz[0], excitation.usable_to)
         .alone()
         .caption(format!(
-            "The hammer excites up to {} Hz; the force's noise makes H1 read low by {} % at the most.",
+            "The hammer excites up to {} Hz; the force's noise makes H1 by the textbook read low by {} % at the most.",
             fixed(excitation.usable_to, 0),
             significant(100.0 * excitation.h1_bias, 2)
         ))

@@ -31,9 +31,13 @@ impl Says for Remark {
             Remark::Hum { hz, signals } => hum(*hz, signals),
             Remark::UnequalNoise { ratio, is_plain } => unequal_noise(*ratio, *is_plain),
             Remark::Disagreement { ratio, frfs } => disagreement(*ratio, frfs),
-            Remark::SmallH1(struck) => format!(
-                "the force's noise makes H1 read low by up to {} where the force is weakest: a force window lessens it",
-                shares(struck, "to")
+            Remark::SmallH1 { struck, taken_off } => format!(
+                "the force's noise makes H1 read low by up to {} where the force is weakest: {}",
+                shares(struck, "to"),
+                match taken_off {
+                    true => "that was taken off, as the samples apart from the blow show it",
+                    false => "a force window lessens it",
+                }
             ),
             Remark::ForceDips { struck, hz } => force_dips(struck, hz),
             Remark::DrawsEnergy(pair) => format!(

@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 use jointscope::check::{Check, CheckOptions, Figure, Weight};
-use jointscope::estimation::ResponseWindow;
 use jointscope::report::check_report;
 use jointscope::report::format::{quantity, with_sign};
 use jointscope::spectra::in_sentence;
@@ -60,7 +59,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<String, Refusal> {
         ));
     }
     destination.foresee(files(), &[FILE, PAGE])?;
-    let options = CheckOptions { estimate: arguments.estimation.options(ResponseWindow::Auto) };
+    let options = CheckOptions { estimate: arguments.estimation.for_models() };
     let check = Check::of(&fixture, measurement.as_ref(), &options)
         .map_err(|error| recording.unanswered(&error, &fixture))?;
     let context = origin::context(files(), Vec::new(), None)?;

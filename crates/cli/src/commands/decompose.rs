@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 use jointscope::cases::Command;
-use jointscope::estimation::ResponseWindow;
 use jointscope::pipeline::{DecomposeOptions, decompose};
 use jointscope::report::joint_report;
 use jointscope::wording::Summary;
@@ -92,7 +91,7 @@ fn found(arguments: &DecomposeArguments, command: String, one_joint: bool) -> Re
             exact: arguments.exact,
             laws: true,
         },
-        estimate: arguments.estimation.options(ResponseWindow::Auto),
+        estimate: arguments.estimation.for_models(),
         one_joint,
     };
     let mut decomposition = decompose(&fixture, measurement, &options)

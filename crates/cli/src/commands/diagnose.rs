@@ -6,7 +6,6 @@ use std::time::Duration;
 use clap::Args;
 use jointscope::cases::Command;
 use jointscope::diagnosis::Step;
-use jointscope::estimation::ResponseWindow;
 use jointscope::pipeline::{MeasuredFrfs, Options, Progress};
 use jointscope::report::answer_report;
 use jointscope::spectra::FrfPair;
@@ -114,7 +113,7 @@ pub(super) fn diagnosed(
 ) -> Result<Answer, Refusal> {
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let measurement = arguments.recording.measurement(&fixture)?;
-    let estimate = arguments.estimation.options(ResponseWindow::Auto);
+    let estimate = arguments.estimation.for_models();
     let baseline = match arguments.baseline.is_empty() {
         true => None,
         false => {

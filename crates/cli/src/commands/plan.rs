@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use jointscope::diagnosis::Observation;
-use jointscope::estimation::ResponseWindow;
 use jointscope::pipeline::MeasuredFrfs;
 use jointscope::plan::{Plan, PlanOptions, Remaining, Start, Suggestion, Wanted, WeighedName, weighed_by};
 use jointscope::report::{PageContext, plan_page, weighed_page};
@@ -240,7 +239,7 @@ fn for_interval(arguments: &PlanArguments, wanted: &Wanted) -> Result<Planned, R
         ));
     }
     let recording = recording(arguments);
-    let estimate = arguments.estimation.options(ResponseWindow::Auto);
+    let estimate = arguments.estimation.for_models();
     let measured = MeasuredFrfs::of(&recording.measurement(&file)?, &estimate)
         .and_then(|measured| measured.screened(&file))
         .map_err(|error| recording.unanswered(&error, &file))?;
@@ -266,7 +265,7 @@ fn weighed(
     let remaining = diagnosed.remaining(arguments.finding)?;
     let state = FixtureFile::read(state)?;
     let recording = diagnosed.arguments.recording.of_files(&[recorded.to_owned()]);
-    let estimate = diagnosed.arguments.estimation.options(ResponseWindow::Auto);
+    let estimate = diagnosed.arguments.estimation.for_models();
     let measured = MeasuredFrfs::of(&recording.measurement(&state)?, &estimate)
         .and_then(|measured| measured.screened(&state))
         .map_err(|error| recording.unanswered(&error, &state))?;

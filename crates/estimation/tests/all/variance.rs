@@ -153,3 +153,35 @@ fn of_lines_that_share_their_noise_under_a_window_or_by_zero_padding_one_is_used
         check(&format!("{what}, usable lines"), usable, 0.8, 2.0);
     }
 }
+
+#[test]
+fn h1_without_the_forces_noise_is_right_on_average_under_a_window_too() {
+    // Noise of half a per cent of the blow: some per cent of the power of its spectrum within the band.
+    let short_by = |decay: f64, unbiased: bool| {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for seed in 0..60 {
+            let test = Test {
+                seed,
+                force_noise: vec![1.0; 4],
+                response_noise: vec![0.0; 4],
+                ..Test::quiet(4, 4096)
+            };
+            let response_window =
+                if decay > 0.0 { ResponseWindow::Decay(decay) } else { ResponseWindow::None };
+            let options = EstimateOptions { response_window, unbiased, ..EstimateOptions::default() };
+            let estimate = Estimate::of(&test.hits(), &options).unwrap();
+            let frfs = estimate.usable().unwrap();
+            let hz = frfs.lines().hz();
+            for line in (0..hz.len()).filter(|&l| (20.0..480.0).contains(&hz[l])) {
+                sum += 1.0 - (frfs.values(0)[line] / TWO_MODES.frf(estimate.decay, hz[line])).re;
+                count += 1.0;
+            }
+        }
+        sum / count
+    };
+    for decay in [0.0, 4.0] {
+        let [textbook, unbiased] = [false, true].map(|unbiased| short_by(decay, unbiased));
+        println!("decay {decay}: short by {textbook:.5}, without the force's noise by {unbiased:.5}");
+        assert!(textbook > 5e-3 && unbiased.abs() < 0.15 * textbook, "{decay}: {textbook} {unbiased}");
+    }
+}
