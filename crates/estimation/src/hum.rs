@@ -3,19 +3,21 @@
 //! Hum is told from the structure's ringing by cause and effect: it is there before the blow. What the quiet
 //! end of a record shows at the mains' frequency and its multiples is continued back to the samples before
 //! the blow; where it explains them it is hum, whatever mode lies beside it, and is taken off the whole
-//! record. Left in, a window spreads it over the lines about it, and its phase, which differs from hit to
+//! record. What repeats itself with every blow, as strong as the blow and at the same time after it, is the
+//! structure's answer all the same: a record may be a period of a periodic one. Left in, a window spreads it over the lines about it, and its phase, which differs from hit to
 //! hit, passes for a structure that changes with the strength of the blow.
 
 use std::f64::consts::{PI, TAU};
 
 use jointscope_hits::{Fourier, Hit};
+use jointscope_spectra::Channel;
 use num_complex::Complex64;
 
 use crate::pulse::Pulse;
 use crate::settings::baseline::FEWEST_BEFORE;
 use crate::settings::hum::{
     ASIDE, BELOW_FILTER, EXPLAINS, FEWEST_PERIODS_AFTER, FINER, HARMONICS, HIGHEST_HZ, LEAST_BEFORE_S,
-    MAINS_HZ, PADDING, STANDS_OUT, STEPS_IN_LINE, WANDERS,
+    MAINS_HZ, PADDING, SAME_AFTER_BLOW, STANDS_OUT, STEPS_IN_LINE, WANDERS,
 };
 use crate::{Baseline, Signal, baseline};
 
@@ -99,6 +101,11 @@ struct Trace<'a> {
     signal: Signal,
     values: &'a [f64],
     interval: f64,
+    /// Point of the blow, and its largest force.
+    struck: &'a Channel,
+    peak: f64,
+    /// First sample of the blow.
+    onset: usize,
     /// Samples before the blow.
     before: usize,
     /// First sample of the quiet end.
@@ -119,8 +126,19 @@ impl<'a> Trace<'a> {
         {
             return Vec::new();
         }
-        let trace =
-            |index, signal, values| Trace { hit: number, index, signal, values, interval, before, tail };
+        let (struck, peak, onset) = (hit.struck(), pulse.peak, pulse.begin);
+        let trace = |index, signal, values| Trace {
+            hit: number,
+            index,
+            signal,
+            values,
+            interval,
+            struck,
+            peak,
+            onset,
+            before,
+            tail,
+        };
         let responses = hit.responses().iter().enumerate().map(|(i, response)| {
             trace(i + 1, Signal::Response(response.channel.clone()), response.values.as_slice())
         });
@@ -225,7 +243,8 @@ impl Found {
                     explained += 0.5 * quiet.len() as f64 * (square(quiet) / square(&rest)).ln();
                     without.push((place, tone, rest));
                 }
-                if explained > EXPLAINS {
+                let blows = without.iter().map(|(place, tone, _)| (&traces[own[*place]], *tone));
+                if explained > EXPLAINS && !repeats(&blows.collect::<Vec<_>>()) {
                     found.explained += explained;
                     for (place, tone, rest) in without {
                         found.tones[own[place]].push(tone);
@@ -236,6 +255,27 @@ impl Found {
         }
         found
     }
+}
+
+/// Whether a tone of one signal is the same after every blow at a point, as a multiple of its force: where at
+/// some point there is more than one blow, and so at every such point.
+fn repeats(blows: &[(&Trace, Tone)]) -> bool {
+    let after_blow = |(trace, tone): &(&Trace, Tone)| {
+        tone.amplitude * Complex64::cis(tone.step * (trace.onset as f64 - tone.middle)) / trace.peak
+    };
+    let mut points: Vec<&Channel> = blows.iter().map(|(trace, _)| trace.struck).collect();
+    points.sort();
+    points.dedup();
+    let groups = points.into_iter().map(|point| {
+        let own = blows.iter().filter(|(trace, _)| trace.struck == point);
+        own.map(after_blow).collect::<Vec<Complex64>>()
+    });
+    let groups: Vec<Vec<Complex64>> = groups.filter(|group| group.len() > 1).collect();
+    let is_one = |group: &Vec<Complex64>| {
+        let mean = group.iter().sum::<Complex64>() / group.len() as f64;
+        group.iter().all(|of_blow| (of_blow - mean).norm() < SAME_AFTER_BLOW * mean.norm())
+    };
+    !groups.is_empty() && groups.iter().all(is_one)
 }
 
 fn square(values: &[f64]) -> f64 {

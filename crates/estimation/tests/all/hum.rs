@@ -83,6 +83,26 @@ fn a_mode_at_the_mains_frequency_that_rings_to_the_end_is_no_hum() {
 }
 
 #[test]
+fn an_answer_that_wraps_round_a_periodic_record_is_no_hum() {
+    // What is left of it at the record's end stands before the blow.
+    let wrapped = |test: &Test| -> Vec<Hit> {
+        let long = Test { samples: 4 * test.samples, ..test.clone() };
+        let around = |hit_: &Hit| {
+            let values = &hit_.responses()[0].values;
+            let at = |i: usize| (0..4).map(|period| values[i + period * test.samples]).sum();
+            hit(hit_.number(), hit_.force()[..test.samples].to_vec(), (0..test.samples).map(at).collect())
+        };
+        long.hits().iter().map(around).collect()
+    };
+    // A mode that is on the mains' frequency to a hundredth of a line, and hardly damped.
+    let structure = Structure { modes: [(50.0, 0.05, 0.11), TWO_MODES.modes[1]], ..TWO_MODES };
+    let test = Test { structure, ..Test::quiet(2, 4096) };
+    let hits = wrapped(&Test { strengths: vec![80.0, 120.0], ..test });
+    let found = Estimate::of(&hits, &EstimateOptions::default()).unwrap();
+    assert_eq!(hum(&found), None);
+}
+
+#[test]
 fn noise_alone_is_no_hum() {
     for seed in 0..100 {
         let found = Estimate::of(&noisy(seed).hits(), &EstimateOptions::default()).unwrap();
