@@ -108,9 +108,9 @@ impl Diagnosis {
         let diagnosed = |observation| Self::by_its_route(&usable, observation, watch);
         let diagnosis = diagnosed(observation)?;
         let diagnosis = match options.baseline {
-            None => diagnosis
-                .without_shortfall(&options.settings, diagnosed)?
-                .beside_modes(&options.settings, diagnosed)?,
+            None => {
+                diagnosis.without_shortfall(options, diagnosed)?.beside_modes(&options.settings, diagnosed)?
+            }
             Some(_) => diagnosis,
         };
         let diagnosis = diagnosis.within_estimates(options);
@@ -179,13 +179,16 @@ impl Diagnosis {
     }
 
     /// The same, or, where something was found or left and FRFs that fall short by noise of the force explain
-    /// the recording better, what is `diagnosed` of the FRFs without that.
+    /// the recording better, what is `diagnosed` of the FRFs without that. FRFs that were estimated from hits
+    /// do not: that noise was seen and taken off.
     fn without_shortfall(
         self,
-        settings: &Settings,
+        options: &DiagnosisOptions,
         diagnosed: impl Fn(Observation) -> Result<Self, DiagnosisError>,
     ) -> Result<Self, DiagnosisError> {
-        if self.verdict == Verdict::Consistent && self.model_error.is_none() {
+        let settings = &options.settings;
+        let needs_nothing = self.verdict == Verdict::Consistent && self.model_error.is_none();
+        if options.estimated || needs_nothing {
             return Ok(self);
         }
         let fitter = Fitter { observation: &self.observation, settings, watch: Watch::default() };
