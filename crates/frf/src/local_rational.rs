@@ -39,6 +39,13 @@ pub(crate) struct Expected {
     pub variance: f64,
 }
 
+/// b₀, b₁, b₂ and a of values over their `level`, at distances in a `unit` of Hz.
+struct Scaled {
+    unit: f64,
+    level: f64,
+    solution: [Complex64; UNKNOWNS],
+}
+
 /// Fits one line after another without allocation.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LocalRationalFit {
@@ -66,13 +73,8 @@ impl LocalRationalFit {
         }
         let from = line.saturating_sub(half).min(n - 2 * half - 1);
         let used = from..from + 2 * half + 1;
-        let unit = unit(hz, line, half)?;
-        let x = |i: usize| (hz[i] - hz[line]) / unit;
-        let level = used.clone().map(|i| values[i].norm_sqr()).fold(0.0, f64::max).sqrt();
-        if level <= 0.0 || !level.is_finite() {
-            return None;
-        }
-        let [b0, b1, b2, pole] = self.solved(used.clone().map(|i| (x(i), values[i] / level)))?;
+        let Scaled { unit, level, solution: [b0, b1, b2, pole] } =
+            self.scaled(hz, values, (line, half), used.clone())?;
         // Two columns of the inverse: of the value at the line itself, and of the pole.
         self.columns.clear();
         self.columns.resize(2 * UNKNOWNS, Complex64::ZERO);
@@ -114,23 +116,35 @@ impl LocalRationalFit {
         if line < half || line + half >= values.len() || 2 * half <= UNKNOWNS {
             return None;
         }
-        let unit = unit(hz, line, half)?;
         let used = (line - half..line).chain(line + 1..line + half + 1);
-        let x = |i: usize| (hz[i] - hz[line]) / unit;
-        let level = used.clone().map(|i| values[i].norm_sqr()).fold(0.0, f64::max).sqrt();
-        if level <= 0.0 || !level.is_finite() {
-            return None;
-        }
-        let [b0, b1, b2, pole] = self.solved(used.clone().map(|i| (x(i), values[i] / level)))?;
+        let Scaled { unit, level, solution: [b0, b1, b2, pole] } =
+            self.scaled(hz, values, (line, half), used.clone())?;
         self.columns.clear();
         self.columns.resize(UNKNOWNS, Complex64::ZERO);
         self.columns[0] = Complex64::ONE;
         self.lu.solve_columns_in_place(&mut self.columns, 1);
         let at = |x: f64| level * (b0 + (b1 + b2 * x) * x) / (1.0 + pole * x);
-        let misfit: f64 = used.map(|i| (values[i] - at(x(i))).norm_sqr()).sum();
+        let misfit: f64 = used.map(|i| (values[i] - at((hz[i] - hz[line]) / unit)).norm_sqr()).sum();
         let variance = misfit / (2 * half - UNKNOWNS) as f64;
         let (value, leverage) = (at(0.0), self.columns[0].re.max(0.0));
         (value.is_finite() && variance.is_finite()).then_some(Expected { value, leverage, variance })
+    }
+
+    /// The function about `line` from the lines `used`, within `half` of it; `None` where they hold nothing.
+    fn scaled(
+        &mut self,
+        hz: &[f64],
+        values: &[Complex64],
+        (line, half): (usize, usize),
+        used: impl Iterator<Item = usize> + Clone,
+    ) -> Option<Scaled> {
+        let unit = unit(hz, line, half)?;
+        let level = used.clone().map(|i| values[i].norm_sqr()).fold(0.0, f64::max).sqrt();
+        if level <= 0.0 || !level.is_finite() {
+            return None;
+        }
+        let solution = self.solved(used.map(|i| ((hz[i] - hz[line]) / unit, values[i] / level)))?;
+        Some(Scaled { unit, level, solution })
     }
 
     /// b₀, b₁, b₂ and a from values at their distances, weighted by the denominator of the pass before;
