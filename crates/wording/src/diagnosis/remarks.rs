@@ -32,7 +32,7 @@ fn only_one_frf(diagnosis: &Diagnosis) -> Option<String> {
     let [only] = diagnosis.observation.pairs() else { return None };
     Some(format!(
         "There is one FRF only, {only}: it shows whether the fixture explains it, and which laws would; it cannot say where \
-         something sits, for one free value a line at any place explains one FRF, and nothing can be held out. Record at least \
+         something sits, for one free value a line at any place explains one FRF, and no FRF can be held out. Record at least \
          one more response or reference point."
     ))
 }
