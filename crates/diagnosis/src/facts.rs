@@ -6,6 +6,7 @@ use crate::diagnosis::Diagnosis;
 use crate::evidence::explained;
 use crate::finding::{Finding, Tried};
 use crate::fit::Fit;
+use crate::held_out::JUDGEMENT_STEP;
 use crate::location::{BandMisfit, Location};
 use crate::mismatch::{BandShare, FrfMismatch};
 use crate::odd_record::OddRecord;
@@ -121,6 +122,11 @@ impl Diagnosis {
         let nearest = self.tried.first().filter(|_| consistent)?;
         let by_chance = self.search.candidates.len() as f64 * (-nearest.ln_gain).exp();
         (by_chance < LEAST_BY_CHANCE).then_some((nearest, by_chance))
+    }
+
+    /// Whether the work ended before the judgement on what no fit saw.
+    pub fn ended_before_judgement(&self) -> bool {
+        self.stopped.contains(&JUDGEMENT_STEP)
     }
 
     /// The one record that is another multiple of what the fixture makes of it than the others, where what

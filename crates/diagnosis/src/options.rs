@@ -27,6 +27,18 @@ pub struct DiagnosisOptions {
     pub settings: Settings,
 }
 
+impl DiagnosisOptions {
+    /// Whether a line, Hz, is within the band that is asked for, and in none that is to be left out.
+    pub fn asks_for(&self, hz: f64) -> bool {
+        self.band.is_none_or(|(from, to)| hz >= from && hz <= to) && !is_within(&self.exclude, hz)
+    }
+}
+
+/// Whether a line, Hz, is in one of these bands.
+pub(crate) fn is_within(bands: &[(f64, f64)], hz: f64) -> bool {
+    bands.iter().any(|(from, to)| hz >= *from && hz <= *to)
+}
+
 /// Why a recording cannot be diagnosed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DiagnosisError {

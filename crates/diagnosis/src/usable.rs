@@ -5,6 +5,7 @@ use crate::contradiction::contradictory;
 use crate::drift::Drifted;
 use crate::fitter::Fitter;
 use crate::moved_sensor::WithoutSensors;
+use crate::options::is_within;
 use crate::record_end::{without_early_end, without_ends_of_references};
 use crate::work::Work;
 use crate::{DiagnosisError, DiagnosisOptions, Hypothesis, Observation, Watch};
@@ -73,7 +74,7 @@ impl<'a> Usable<'a> {
     /// # Errors
     /// FRFs that cannot be used.
     pub(crate) fn part_of_baseline(&self, baseline: &FrfSet) -> Result<Observation, DiagnosisError> {
-        let in_use = |hz| is_asked_for(self.options, hz) && !is_within(&self.contradictory, hz);
+        let in_use = |hz| self.options.asks_for(hz) && !is_within(&self.contradictory, hz);
         let observation = Observation::new(baseline, in_use)?;
         let observation = match &self.drifted {
             Some(drifted) => drifted.agreeing(&observation),
@@ -130,7 +131,7 @@ fn without_contradictory(
     nominal: &Hypothesis,
     work: Arc<Work>,
 ) -> Result<(Observation, Vec<(f64, f64)>), DiagnosisError> {
-    let asked = |hz| is_asked_for(options, hz);
+    let asked = |hz| options.asks_for(hz);
     let observation = Observation::new(frfs, asked)?.counted(Arc::clone(&work));
     nominal.predict(&observation)?;
     let contradictory = contradictory(&observation, nominal);
@@ -140,13 +141,4 @@ fn without_contradictory(
     let in_use = |hz| asked(hz) && !is_within(&contradictory, hz);
     let observation = Observation::new(frfs, in_use)?.counted(work);
     Ok((observation, contradictory))
-}
-
-/// Whether a line is within the band that is asked for, and in none that is to be left out.
-fn is_asked_for(options: &DiagnosisOptions, hz: f64) -> bool {
-    options.band.is_none_or(|(from, to)| hz >= from && hz <= to) && !is_within(&options.exclude, hz)
-}
-
-fn is_within(bands: &[(f64, f64)], hz: f64) -> bool {
-    bands.iter().any(|(from, to)| hz >= *from && hz <= *to)
 }

@@ -42,9 +42,8 @@ pub(crate) fn mark_cut_off_alike(hits: &mut [Conditioned]) {
     }
 }
 
-/// The same hits with hum and baselines off, as the estimate takes them: for whatever else is made of hits.
-pub fn prepared(hits: &[Hit], baseline: Baseline) -> Vec<Hit> {
-    let (all, _) = Conditioned::all(hits, baseline);
+/// The same hits with this hum and baselines off.
+pub(crate) fn prepared(hits: &[Hit], hum: Option<&Hum>, baseline: Baseline) -> Vec<Hit> {
     let prepared = |Conditioned { hit, force, responses, .. }: Conditioned| {
         let responses =
             responses.into_iter().map(|signal| Response { values: signal.values, ..signal.response.clone() });
@@ -53,7 +52,7 @@ pub fn prepared(hits: &[Hit], baseline: Baseline) -> Vec<Hit> {
         Hit::new(number, interval, start, hit.struck().clone(), force, responses.collect())
             .unwrap_or_else(|_| hit.clone())
     };
-    all.into_iter().map(prepared).collect()
+    Conditioned::all(hits, hum, baseline).into_iter().map(prepared).collect()
 }
 
 /// One response of a hit without hum and baseline.
@@ -70,12 +69,11 @@ pub(crate) struct Signal<'a> {
 }
 
 impl<'a> Conditioned<'a> {
-    /// All hits of a test; with the hum that was taken off, if there was any. `Baseline::Keep` keeps it.
-    pub(crate) fn all(hits: &'a [Hit], kind: Baseline) -> (Vec<Self>, Option<Hum>) {
-        let hum = if kind == Baseline::Keep { None } else { Hum::of(hits) };
+    /// All hits of a test, the hum that they have taken off.
+    pub(crate) fn all(hits: &'a [Hit], hum: Option<&Hum>, kind: Baseline) -> Vec<Self> {
         let without_hum = |index: usize, signal: usize, values: &[f64]| {
             let mut values = values.to_vec();
-            if let Some(hum) = &hum {
+            if let Some(hum) = hum {
                 hum.take_off(index, signal, &mut values);
             }
             values
@@ -85,7 +83,7 @@ impl<'a> Conditioned<'a> {
             let responses = responses.map(|(i, response)| without_hum(index, i + 1, &response.values));
             Conditioned::of(hit, without_hum(index, 0, hit.force()), responses.collect(), kind)
         };
-        (hits.iter().enumerate().map(of).collect(), hum)
+        hits.iter().enumerate().map(of).collect()
     }
 
     /// A hit whose signals without hum are `force` and `responses`.

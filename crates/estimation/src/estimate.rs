@@ -7,14 +7,15 @@ use num_complex::Complex64;
 
 use crate::average::{Averaged, Pair, averaged, variance_of_unequal_hits, weights_by_noise};
 use crate::band::last_usable;
-use crate::conditioned::{Conditioned, Spectra, Transform, mark_cut_off_alike};
+use crate::conditioned::{Conditioned, Spectra, Transform, mark_cut_off_alike, prepared};
+use crate::hum::Hum;
 use crate::remarks::Remarks;
 use crate::settings::force_noise::MOST_NOISE_OF_FORCE;
 use crate::settings::hits::{FEWEST_SAMPLES, SAME_INTERVAL};
 use crate::settings::windows::{LEFT_BY_WINDOW, LOWEST_SPACINGS, MOST_LEFT_OUT};
 use crate::{
-    EstimateError, EstimateOptions, Estimator, Excitation, ForceWindow, HitReport, Remark, ResponseWindow,
-    Weighting,
+    Baseline, EstimateError, EstimateOptions, Estimator, Excitation, ForceWindow, HitReport, Remark,
+    ResponseWindow, Weighting,
 };
 
 /// FRFs of a hammer test, and what was seen on the way to them.
@@ -35,6 +36,9 @@ pub struct Estimate {
     pub remarks: Vec<Remark>,
     /// Neighbouring lines that tell as much as one line whose noise is its own.
     alike: f64,
+    /// Hum that was taken off the hits, and what else.
+    hum: Option<Hum>,
+    baseline: Baseline,
 }
 
 impl Estimate {
@@ -44,7 +48,8 @@ impl Estimate {
     /// See [`EstimateError`].
     pub fn of(hits: &[Hit], options: &EstimateOptions) -> Result<Self, EstimateError> {
         check(hits, options)?;
-        let (mut all, hum) = Conditioned::all(hits, options.baseline);
+        let hum = if options.baseline == Baseline::Keep { None } else { Hum::of(hits) };
+        let mut all = Conditioned::all(hits, hum.as_ref(), options.baseline);
         mark_cut_off_alike(&mut all);
         let reports: Vec<HitReport> = all.iter().map(|hit| report(hit, options)).collect();
         let used: Vec<&Conditioned> =
@@ -64,10 +69,16 @@ impl Estimate {
         let test = Test { used: &used, spectra: &spectra, force_noise, lines: &lines, alike, options };
         let excitations: Vec<Excitation> = test.struck().map(|struck| test.excitation(struck)).collect();
         let mut remarks = Remarks::of_hits(&all, &reports, options, decay);
-        remarks.of_hum(hum);
+        remarks.of_hum(hum.as_ref());
         let frfs = test.frfs(&excitations, &mut remarks)?;
         remarks.of_frfs(&frfs, &excitations, options);
-        Ok(Estimate { frfs, hits: reports, excitations, decay, remarks: remarks.all, alike })
+        let baseline = options.baseline;
+        Ok(Estimate { frfs, hits: reports, excitations, decay, remarks: remarks.all, alike, hum, baseline })
+    }
+
+    /// The hits that it was made of as it took them, hum and baselines off: for whatever else is made of them.
+    pub fn prepared(&self, hits: &[Hit]) -> Vec<Hit> {
+        prepared(hits, self.hum.as_ref(), self.baseline)
     }
 
     /// The FRFs on the lines above 0 Hz that the hammer excites at every struck point; under a window without

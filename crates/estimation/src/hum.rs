@@ -4,8 +4,10 @@
 //! end of a record shows at the mains' frequency and its multiples is continued back to the samples before
 //! the blow; where it explains them it is hum, whatever mode lies beside it, and is taken off the whole
 //! record. What repeats itself with every blow, as strong as the blow and at the same time after it, is the
-//! structure's answer all the same: a record may be a period of a periodic one. Left in, a window spreads it over the lines about it, and its phase, which differs from hit to
-//! hit, passes for a structure that changes with the strength of the blow.
+//! structure's answer all the same: a record may be a period of a periodic one.
+//!
+//! Left in, hum is spread by a window over the lines about it, and its phase, which differs from hit to hit,
+//! passes for a structure that changes with the strength of the blow.
 
 use std::f64::consts::{PI, TAU};
 
@@ -52,6 +54,9 @@ impl Hum {
     /// The hum of all hits; `None` where no signal has any that shows before the blow.
     pub(crate) fn of(hits: &[Hit]) -> Option<Self> {
         let traces: Vec<Trace> = hits.iter().enumerate().flat_map(|(i, hit)| Trace::all(i, hit)).collect();
+        if traces.is_empty() {
+            return None;
+        }
         let endings: Vec<Ending> = traces.iter().map(Ending::of).collect();
         let finest = endings.iter().map(|ending| ending.resolution).fold(f64::INFINITY, f64::min);
         let best = |all: &mut dyn Iterator<Item = f64>| {
@@ -88,7 +93,7 @@ impl Hum {
 
     /// Takes it off a signal of a hit, of which the force is number 0.
     pub(crate) fn take_off(&self, hit: usize, signal: usize, values: &mut [f64]) {
-        for tone in &self.tones[hit][signal] {
+        for tone in self.tones.get(hit).and_then(|signals| signals.get(signal)).into_iter().flatten() {
             values.iter_mut().enumerate().for_each(|(i, value)| *value -= tone.at(i));
         }
     }

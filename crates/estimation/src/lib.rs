@@ -54,7 +54,6 @@ mod remarks;
 mod report;
 mod settings;
 
-pub use conditioned::prepared;
 pub use error::EstimateError;
 pub use estimate::Estimate;
 pub use fault::{Fault, Signal};

@@ -138,10 +138,8 @@ impl Remarks {
     }
 
     /// What hum was taken off.
-    pub(crate) fn of_hum(&mut self, hum: Option<Hum>) {
-        if let Some(Hum { hz, signals, .. }) = hum {
-            self.all.push(Remark::Hum { hz, signals });
-        }
+    pub(crate) fn of_hum(&mut self, hum: Option<&Hum>) {
+        self.all.extend(hum.map(|hum| Remark::Hum { hz: hum.hz, signals: hum.signals.clone() }));
     }
 
     /// How differently the hits of an FRF count.

@@ -3,7 +3,6 @@
 
 use crate::Form;
 use crate::body::Body;
-use crate::joint::without_structural;
 use crate::matrices::{KINDS, Kind, Sparse};
 use crate::numbers::twenty;
 use crate::parts::{Element, dof_number};
@@ -47,7 +46,7 @@ pub(crate) fn body(export: &Export, form: Form) -> Body {
 
 /// One linear user element with all matrices of a joint.
 fn user_elements(joint: &Joint, index: usize, id: &mut u64, notes: &mut Vec<String>) -> String {
-    let joint = &without_structural(joint, notes);
+    let joint = &joint.without_structural(notes);
     let mut text = format!("*USER ELEMENT, TYPE=U{}, NODES=2, LINEAR\n2, 6\n", 9001 + index);
     for kind in KINDS {
         let Some(matrix) = kind.of(joint) else { continue };

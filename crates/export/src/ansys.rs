@@ -2,7 +2,6 @@
 
 use crate::Export;
 use crate::body::Body;
-use crate::joint::without_structural;
 use crate::matrices::{KINDS, Kind};
 use crate::numbers::exact;
 use crate::parts::{Element, dof_number};
@@ -26,7 +25,7 @@ pub(crate) fn body(export: &Export) -> Body {
         }
     }
     for joint in &export.joints {
-        let joint = &without_structural(joint, &mut notes);
+        let joint = &joint.without_structural(&mut notes);
         for kind in KINDS {
             let Some(matrix) = kind.of(joint) else { continue };
             let option = match kind {

@@ -7,7 +7,7 @@
 //! added node.
 
 use crate::body::Body;
-use crate::joint::{ElasticCentre, is_zero, without_structural};
+use crate::joint::{ElasticCentre, is_zero};
 use crate::numbers::twenty;
 use crate::parts::Element;
 use crate::{Export, ExportError, Joint};
@@ -78,7 +78,7 @@ impl Writer {
     }
 
     fn joint(&mut self, joint: &Joint) -> Result<(), ExportError> {
-        let joint = &without_structural(joint, &mut self.notes);
+        let joint = &joint.without_structural(&mut self.notes);
         for (element, matrix) in [("SPRING", &joint.stiffness), ("DASHPOT", &joint.damping)] {
             for (direction, value) in terms(joint, element, matrix)? {
                 let motion = self.relative(joint, direction);

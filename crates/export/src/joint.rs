@@ -128,17 +128,6 @@ pub(crate) fn symmetric(matrix: &Matrix) -> Matrix {
     [[a, mean], [mean, d]]
 }
 
-/// A joint as a program without structural damping takes it, what is written in its stead being said.
-pub(crate) fn without_structural(joint: &Joint, notes: &mut Vec<String>) -> Joint {
-    match joint.viscous_instead() {
-        Some((viscous, says)) => {
-            notes.push(says);
-            viscous
-        }
-        None => joint.clone(),
-    }
-}
-
 /// How far the centre of C, or of the structural damping, is from that of K.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct CentreAgreement {
@@ -211,20 +200,24 @@ impl Joint {
         self.centre_agreement(&self.structural, |gradient| Some(propagated(&covariance?, gradient)))
     }
 
-    /// The same joint with viscous damping in place of its structural damping, as much of it at the frequency
-    /// that is known, and what to say of that; `None` where there is none to replace or no such frequency.
-    pub(crate) fn viscous_instead(&self) -> Option<(Self, String)> {
-        let (hz, _) = self.structural_at.filter(|_| !is_zero(&self.structural))?;
-        let mut joint = Joint { structural: [[0.0; 2]; 2], structural_at: None, ..self.clone() };
+    /// The joint for programs without structural damping: with the viscous damping that loses as much at the
+    /// frequency that is known, which the notes say; the same where there is none to replace or no such
+    /// frequency.
+    pub(crate) fn without_structural(&self, notes: &mut Vec<String>) -> Self {
+        let mut joint = self.clone();
+        let Some((hz, _)) = joint.structural_at.take().filter(|_| !is_zero(&self.structural)) else {
+            return joint;
+        };
+        joint.structural = [[0.0; 2]; 2];
         for (row, structural) in joint.damping.iter_mut().zip(&self.structural) {
             row.iter_mut().zip(structural).for_each(|(c, h)| *c += h / (std::f64::consts::TAU * hz));
         }
-        let says = format!(
+        notes.push(format!(
             "joint {}: its structural damping H, which is the same at all frequencies, is written as the viscous damping H/omega that loses as much at {} Hz: more above, less below; scale it for another frequency",
             self.name,
             short(hz)
-        );
-        Some((joint, says))
+        ));
+        joint
     }
 
     /// Standard deviations of the structural damping, where they are known.

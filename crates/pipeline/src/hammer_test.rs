@@ -1,6 +1,6 @@
 //! Hammer hits with the FRFs estimated from them.
 
-use jointscope_estimation::{Baseline, Estimate, EstimateError, EstimateOptions, Estimator, prepared};
+use jointscope_estimation::{Estimate, EstimateError, EstimateOptions, Estimator};
 use jointscope_hits::Hit;
 use jointscope_spectra::{FrfSet, in_text};
 use jointscope_wording::counted;
@@ -12,8 +12,6 @@ pub struct HammerTest {
     pub hits: Vec<Hit>,
     /// FRFs, and what became of each hit.
     pub estimate: Estimate,
-    /// What was taken off every signal.
-    baseline: Baseline,
 }
 
 impl HammerTest {
@@ -23,13 +21,13 @@ impl HammerTest {
     /// See [`EstimateError`].
     pub fn of(hits: &[Hit], options: &EstimateOptions) -> Result<Self, EstimateError> {
         let estimate = Estimate::of(hits, options)?;
-        Ok(HammerTest { hits: hits.to_vec(), estimate, baseline: options.baseline })
+        Ok(HammerTest { hits: hits.to_vec(), estimate })
     }
 
     /// The hits that the estimate uses, without hum and baselines: what differs from hit to hit changes FRFs
     /// of single hits under a window, as no law of a joint does.
     pub(crate) fn hits_in_use(&self) -> Vec<Hit> {
-        let prepared = prepared(&self.hits, self.baseline).into_iter().zip(&self.estimate.hits);
+        let prepared = self.estimate.prepared(&self.hits).into_iter().zip(&self.estimate.hits);
         prepared.filter(|(_, report)| report.used).map(|(hit, _)| hit).collect()
     }
 

@@ -43,12 +43,7 @@ impl Options {
     /// Refuses a choice of lines that leaves none, or so few that they tell neither a mode nor a misfit from
     /// noise.
     pub(crate) fn check(&self, frfs: &FrfSet) -> Result<(), Error> {
-        let within = |hz: f64, &(from, to): &(f64, f64)| hz >= from && hz <= to;
-        let in_use = |hz: f64| {
-            hz > 0.0
-                && self.diagnosis.band.is_none_or(|band| within(hz, &band))
-                && !self.diagnosis.exclude.iter().any(|band| within(hz, band))
-        };
+        let in_use = |hz: f64| hz > 0.0 && self.diagnosis.asks_for(hz);
         let hz = frfs.lines().hz();
         match (hz.first(), hz.last(), hz.iter().filter(|hz| in_use(**hz)).count()) {
             (Some(&first), Some(&last), 0) => Err(Error::NoLineInUse { first, last }),

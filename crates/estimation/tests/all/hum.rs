@@ -1,7 +1,7 @@
 //! Mains hum in the records of hits.
 
 use crate::common::{INTERVAL, Structure, TWO_MODES, Test, hit};
-use jointscope_estimation::{Baseline, Estimate, EstimateOptions, Remark, Signal, prepared};
+use jointscope_estimation::{Baseline, Estimate, EstimateOptions, Remark, Signal};
 use jointscope_hits::Hit;
 use jointscope_spectra::Channel;
 use std::f64::consts::TAU;
@@ -56,7 +56,8 @@ fn hum_at_another_phase_in_every_hit_is_named_and_taken_off_to_below_the_noise()
     assert!((hz - 50.03).abs() < 0.02, "{hz} Hz");
     assert_eq!(signals.len(), 1, "not the force: {signals:?}");
     assert_eq!(signals[0].0, Signal::Response(Channel::transverse("4")));
-    let [as_clean, without] = [&clean, &recorded].map(|hits| prepared(hits, Baseline::Offset));
+    let of_clean = Estimate::of(&clean, &EstimateOptions::default()).unwrap();
+    let (as_clean, without) = (of_clean.prepared(&clean), found.prepared(&recorded));
     for (clean, without) in as_clean.iter().zip(&without) {
         let values = |hit: &Hit| hit.responses()[0].values.clone();
         let apart = root_mean_square(values(clean).iter().zip(values(without)).map(|(a, b)| a - b));
@@ -68,8 +69,9 @@ fn hum_at_another_phase_in_every_hit_is_named_and_taken_off_to_below_the_noise()
 fn a_hum_that_is_kept_on_request_stays_to_the_last_digit() {
     let recorded = humming(&noisy(1).hits());
     let options = EstimateOptions { baseline: Baseline::Keep, ..EstimateOptions::default() };
-    assert_eq!(hum(&Estimate::of(&recorded, &options).unwrap()), None);
-    assert_eq!(prepared(&recorded, Baseline::Keep), recorded);
+    let kept = Estimate::of(&recorded, &options).unwrap();
+    assert_eq!(hum(&kept), None);
+    assert_eq!(kept.prepared(&recorded), recorded);
 }
 
 #[test]

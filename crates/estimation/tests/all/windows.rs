@@ -1,9 +1,7 @@
 //! Windows, record lengths and what sensors measure.
 
 use crate::common::{INTERVAL, TWO_MODES, Test, hit, pulse};
-use jointscope_estimation::{
-    Baseline, Estimate, EstimateOptions, ForceWindow, Remark, ResponseWindow, prepared,
-};
+use jointscope_estimation::{Baseline, Estimate, EstimateOptions, ForceWindow, Remark, ResponseWindow};
 use jointscope_hits::{Hit, MeasuredMotion, Response};
 use jointscope_spectra::{Channel, FrfSet};
 use proptest::prelude::*;
@@ -156,6 +154,9 @@ fn a_hit_without_its_baselines_is_the_same_wherever_amplifiers_rested() {
     let clean = Test::quiet(1, 4096).hits().remove(0);
     let moved = |by: f64, values: &[f64]| values.iter().map(|v| v + by).collect::<Vec<f64>>();
     let resting = |by: f64| hit(7, moved(2.0 * by, clean.force()), moved(-by, &clean.responses()[0].values));
+    let prepared = |hits: &[Hit], baseline: Baseline| {
+        estimate(hits, &EstimateOptions { baseline, ..EstimateOptions::default() }).prepared(hits)
+    };
     let [settled, other] = [0.0, 3.0].map(|by| prepared(&[resting(by)], Baseline::Offset).remove(0));
     assert_eq!((other.number(), other.struck()), (7, clean.struck()));
     let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);

@@ -39,7 +39,7 @@ pub struct Reach {
 pub struct NonlinearOptions {
     /// Band that is compared, Hz; chosen from hammer and fixture without.
     pub band: Option<(f64, f64)>,
-    /// Bands to leave out, Hz.
+    /// Bands of hits to leave out, Hz; levels come without them.
     pub exclude: Vec<(f64, f64)>,
     /// Take the fixture's bare numbers as exact.
     pub exact: bool,

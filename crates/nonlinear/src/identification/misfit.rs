@@ -230,6 +230,8 @@ impl<'a> Trace<'a> {
         let energy = self.windowed.power();
         let force = self.spectrum(self.record.hit.force());
         let force_noise = self.record.force_noise.powi(2) * energy;
+        let counts: Vec<bool> =
+            self.lines.clone().map(|line| compared.has(self.windowed.frequency_hz(line))).collect();
         for (response, noise) in self.record.hit.responses().iter().zip(&self.record.noise) {
             let lines = self.spectrum(&response.values);
             let own = noise * noise * energy;
@@ -241,8 +243,6 @@ impl<'a> Trace<'a> {
                 };
                 own + through * force_noise + LINE_ERROR * LINE_ERROR * y.norm_sqr()
             };
-            let counts: Vec<bool> =
-                self.lines.clone().map(|line| compared.has(self.windowed.frequency_hz(line))).collect();
             let weights = lines.iter().zip(&force).map(variance).map(|v| (2.0 / v).sqrt());
             self.weights
                 .push(weights.zip(&counts).map(|(w, counts)| if *counts { w } else { 0.0 }).collect());

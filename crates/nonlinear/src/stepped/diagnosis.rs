@@ -11,7 +11,6 @@ use crate::distribution::f_tail;
 use crate::settings::homogeneity::CHANGED;
 use crate::settings::levels::{ABOUT_PEAK, FEWEST_LINES, LEAST_RATIO, SCATTER_DOUBT, WIDTHS};
 use crate::settings::naming::LEAVES_NOTHING;
-use crate::spectra::Compared;
 use crate::{NonlinearOptions, SteppedError};
 use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::{Fixture, QuantityKey, QuantityOwner};
@@ -97,7 +96,7 @@ impl SteppedDiagnosis {
         options: &NonlinearOptions,
     ) -> Result<Self, SteppedError> {
         check(levels)?;
-        let (levels, band) = about_the_resonance(&with_noise(levels), options)?;
+        let (levels, band) = about_the_resonance(&with_noise(levels), options.band)?;
         let resonances = resonances(&levels)?;
         let linear = one_stiffness_for_all(fixture, &levels)?;
         let closest = linear.iter().min_by(|a, b| a.0.floor.total_cmp(&b.0.floor));
@@ -244,16 +243,15 @@ fn check(levels: &[SteppedLevel]) -> Result<(), SteppedError> {
 /// The lines about the strongest resonance of the lowest level, wide enough for all levels.
 fn about_the_resonance(
     levels: &[SteppedLevel],
-    options: &NonlinearOptions,
+    band: Option<(f64, f64)>,
 ) -> Result<(Vec<SteppedLevel>, (f64, f64)), SteppedError> {
-    let (from, to) = options.band.unwrap_or((0.0, f64::INFINITY));
+    let (from, to) = band.unwrap_or((0.0, f64::INFINITY));
     let too_few = |level: &SteppedLevel| SteppedError::TooFewLines(level.held.to_string());
     let cut = |levels: &[SteppedLevel], from: f64, to: f64| {
-        let lines = Compared { band: (from, to), exclude: &options.exclude };
         levels
             .iter()
             .map(|l| {
-                l.within(&lines).filter(|l| l.frfs.lines().len() >= FEWEST_LINES).ok_or_else(|| too_few(l))
+                l.within(from, to).filter(|l| l.frfs.lines().len() >= FEWEST_LINES).ok_or_else(|| too_few(l))
             })
             .collect::<Result<Vec<_>, _>>()
     };

@@ -1,6 +1,5 @@
 //! One level of a stepped-sine test.
 
-use crate::spectra::Compared;
 use jointscope_spectra::FrfSet;
 use serde::{Serialize, Serializer};
 use std::fmt;
@@ -84,10 +83,10 @@ impl SteppedLevel {
         (hz[top], (hz[last] - hz[first]).max(step))
     }
 
-    /// The level on these lines; `None` where there are none.
-    pub(crate) fn within(&self, lines: &Compared) -> Option<Self> {
+    /// The level on the lines from `from` to `to` Hz; `None` where there are none.
+    pub(crate) fn within(&self, from: f64, to: f64) -> Option<Self> {
         let hz: Vec<f64> = self.frfs.lines().hz().to_vec();
-        let frfs = self.frfs.on_lines(|line| hz[line] > 0.0 && lines.has(hz[line]))?;
+        let frfs = self.frfs.on_lines(|line| hz[line] >= from && hz[line] <= to && hz[line] > 0.0)?;
         Some(SteppedLevel { held: self.held, frfs })
     }
 }

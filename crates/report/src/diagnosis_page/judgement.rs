@@ -43,9 +43,9 @@ pub(super) fn section(subject: &Subject) -> Section {
 
 /// Why the models were judged by nothing that no fit saw.
 pub(super) fn why_nothing_held_out(diagnosis: &Diagnosis) -> &'static str {
-    match diagnosis.stopped.is_empty() {
-        true => "there were too few lines to hold any out of the fit",
-        false => "the search ended before it came to what is held out of the fit",
+    match diagnosis.ended_before_judgement() {
+        true => "the search ended before it came to what is held out of the fit",
+        false => "there were too few lines to hold any out of the fit",
     }
 }
 
