@@ -331,7 +331,7 @@ fn a_structural_joint_with_a_mass_has_its_law_in_quiet_tests_too() {
     let losses = k.map(|row| row.map(|element| 0.03 * element));
     let none = [[0.0; 2]; 2];
     let truth =
-        Truth { kind: LawKind::Structural, stiffness: k, losses, change: none, shape: 1.0, mass: 0.03 };
+        Truth { kind: LawKind::Structural, stiffness: k, losses, change: none, shape: 1.0, mass: 0.05 };
     let analyst = fixture(&Case::ordinary(), "");
     for seed in 0..4 {
         let blocks = drawn_within_tolerance(&analyst, &mut generator(seed)).unwrap();
