@@ -145,7 +145,7 @@ impl RecordedModes {
     /// frequency alone: that it is so narrow is told as well then, which is more than a mass line could be
     /// taken for.
     fn clear_of_the_lower_end(&self, expected: &[Pole]) -> Option<f64> {
-        let spacing = (self.resolved_from - self.lowest) / RESOLVED_LINES;
+        let spacing = (self.resolved_from - self.lowest) / RESOLVED_LINES as f64;
         let is_expected =
             |omega: f64| expected.iter().any(|pole| (pole.omega / omega).ln().abs() < EXPECTED_WITHIN);
         let is_clear = |&index: &usize| {

@@ -20,7 +20,8 @@ impl WeightedFrfs<'_> {
     }
 }
 
-/// Frequency, Hz, from which on modes are told from residual terms.
+/// Frequency, Hz, from which on modes are told from residual terms: so many lines above the lowest one, as
+/// lines lie there. Of many lines those are compared that tell most, most of them near resonances.
 pub(crate) fn resolved_from(hz: &[f64]) -> f64 {
-    hz[0] + RESOLVED_LINES * (hz[hz.len() - 1] - hz[0]) / (hz.len() as f64 - 1.0).max(1.0)
+    hz[RESOLVED_LINES.min(hz.len() - 1)]
 }

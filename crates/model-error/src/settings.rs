@@ -11,10 +11,10 @@ pub(crate) mod recorded {
     /// Lines above the lowest one from which a mode can be told from a residual term. Two or three lines do
     /// not tell a suspension's modes: many poles fit as well, and the mass lines that go with one choice of
     /// them differ from those of another by ten deviations and more.
-    pub(crate) const RESOLVED_LINES: f64 = 4.0;
+    pub(crate) const RESOLVED_LINES: usize = 4;
     /// Lowest lines that may be left out for the sake of modes below these, at most: more are only asked for
     /// where lines are uneven.
-    pub(crate) const MOST_LINES_LEFT_OUT: usize = 2 * RESOLVED_LINES as usize;
+    pub(crate) const MOST_LINES_LEFT_OUT: usize = 2 * RESOLVED_LINES;
     /// Lines above the lowest one beyond which a mode may stand clear of the mass line all the same: that of
     /// a block on a spring which nobody stated was the third, and showed in nothing else.
     pub(crate) const CLEAR_LINES: f64 = 2.0;

@@ -2,7 +2,8 @@
 //! fit states.
 
 use crate::common::*;
-use jointscope_model_error::{Expected, RecordedModes, WeightedFrfs};
+use jointscope_fixture::Fixture;
+use jointscope_model_error::{Expected, RecordedMode, RecordedModes, WeightedFrfs};
 use jointscope_modes::ModesOptions;
 use jointscope_spectra::SpectralLines;
 use std::collections::BTreeMap;
@@ -154,4 +155,20 @@ fn mass_lines_beside_a_suspension_differ_by_the_deviations_that_are_stated() {
     }
     let mean = chi2 / count as f64;
     assert!((mean - 1.0).abs() < 0.15, "χ² of all features per feature {mean:.3}");
+}
+
+#[test]
+fn a_mode_low_in_the_band_is_told_by_the_lines_about_it_and_not_by_those_far_above() {
+    // A line every 1.25 Hz to 40 Hz and one every 20 Hz above, as those are spread that tell most.
+    let (close, far) = ((2..=32).map(|k| 1.25 * f64::from(k)), (3..=75).map(|k| 20.0 * f64::from(k)));
+    let lines = SpectralLines::new(close.chain(far).collect()).unwrap();
+    let held = suspended().to_json().replace("605.6", "60560.0");
+    let fixture = Fixture::from_json(&held).unwrap();
+    let set = Recorded::of(&fixture, &four(), &lines, noise(Some(1)));
+    let recording = WeightedFrfs { frfs: &set.set, weights: &set.weights };
+    let expected = |alone: &RecordedModes| alone.expected_by(&fixture);
+    let recorded = RecordedModes::of(recording, &ModesOptions::default(), expected).unwrap();
+    let hz = |mode: &RecordedMode| mode.pole.omega / TAU;
+    let low = recorded.modes.iter().find(|mode| (15.0..40.0).contains(&hz(mode)));
+    assert!(low.is_some_and(|mode| mode.resolved), "{:?}", recorded.modes);
 }
