@@ -101,6 +101,10 @@ impl Diagnosis {
         options: &DiagnosisOptions,
         watch: Watch,
     ) -> Result<Self, DiagnosisError> {
+        let of_hits = options
+            .estimated
+            .then(|| DiagnosisOptions { settings: options.settings.of_estimates(), ..options.clone() });
+        let options = of_hits.as_ref().unwrap_or(options);
         let work = Arc::new(work_for(fixture, frfs, options));
         let fixture = &with_gains_of_records(fixture, frfs, options);
         let nominal = Hypothesis::nominal(fixture, options.exact);
@@ -274,7 +278,9 @@ impl Diagnosis {
         self.stated[1] = self.stated[0].clone();
         self.departures = departures(&self.stated);
         (self.findings, self.locations, self.tried) = (Vec::new(), Vec::new(), Vec::new());
-        (self.held_out, self.model_error) = (None, None);
+        // What is said of a change says by how much the model misses it.
+        let missed = self.model_error.filter(|_| self.baseline.is_some());
+        (self.held_out, self.model_error) = (None, missed.map(|[refitted, _]| [refitted; 2]));
         self
     }
 

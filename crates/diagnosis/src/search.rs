@@ -3,7 +3,8 @@
 
 use crate::candidate::Candidate;
 use crate::catalogue::{catalogue, with_all_wrong_quantities, with_wrong_quantities};
-use crate::evidence::{cost, explains, lacks_much, nothing_can_be_stated};
+use crate::departures::has_departed;
+use crate::evidence::{cost, explained, explains, lacks_much, nothing_can_be_stated};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::odd_record::OddRecord;
@@ -282,7 +283,11 @@ impl Search {
         let settings = &fitter.settings.selection;
         let cost = |fit: &Fit| parameter_penalty(settings, &fit.hypothesis);
         let gain = (without.objective - with.objective) / with.inflation(fitter.observation);
-        gain > needed_gain(settings, cost(with) - cost(without), self.candidates.len())
+        let leaves_noise = without.chi2_per_dof(fitter.observation)
+            < explained(fitter.observation, fitter.settings)
+            && !has_departed(&without.hypothesis);
+        let least = if leaves_noise { settings.beside_noise } else { 0.0 };
+        gain > needed_gain(settings, cost(with) - cost(without), self.candidates.len()).max(least)
     }
 
     /// Fits of `base` with one more effect, best first by objective and penalty of parameters, with the

@@ -154,6 +154,8 @@ pub struct SelectionSettings {
     pub penalty: f64,
     /// What each of its parameters must gain besides: a χ² of one, and its prior's width.
     pub parameter_penalty: f64,
+    /// What it must gain over what leaves no more than noise as it is, none of its quantities far off.
+    pub beside_noise: f64,
     /// Standard deviations of χ² up to which nothing large is left to be found, without and with effects.
     pub fits: (f64, f64),
     /// Standard deviations of Σ(deviation/std)² up to which quantities are deviated by chance. A layer of
@@ -388,6 +390,16 @@ pub struct EvidenceSettings {
     pub held_out: f64,
 }
 
+impl Settings {
+    /// The same for FRFs that were estimated from hits: those of one reference share the noise of its force,
+    /// which passes for a second effect that gains little.
+    pub(crate) fn of_estimates(&self) -> Self {
+        let mut settings = self.clone();
+        settings.selection.beside_noise = settings.evidence.little_of_estimates;
+        settings
+    }
+}
+
 impl Default for Settings {
     fn default() -> Self {
         Settings {
@@ -434,6 +446,7 @@ impl Default for Settings {
             selection: SelectionSettings {
                 penalty: 8.0,
                 parameter_penalty: 3.0,
+                beside_noise: 0.0,
                 fits: (0.7, 2.0),
                 deviated: 8.0,
                 wrong: 3,

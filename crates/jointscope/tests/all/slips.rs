@@ -8,6 +8,7 @@ use jointscope::fixture::{Dof, Effect, EffectKind, Place};
 use jointscope::{Fixture, FrfPair, FrfSet, SpectralLines};
 use jointscope_rig::HammerSetup;
 use num_complex::Complex64;
+use serde_json::json;
 
 /// The four FRFs across the joint, and those on block A.
 fn eight_pairs() -> Vec<FrfPair> {
@@ -153,6 +154,25 @@ fn what_hardly_shows_is_not_named_where_frfs_were_estimated_from_hits() {
     );
     let estimated = diagnosed(true);
     assert!(estimated.findings.is_empty() && estimated.verdict == Verdict::Consistent);
+}
+
+#[test]
+fn what_hardly_shows_is_not_named_beside_what_does_where_frfs_were_estimated_from_hits() {
+    // Of a model without error of its own the noise of the lines decides.
+    let mut value = believed([0.004, 0.004]).to_value();
+    value["model_error"] = json!({ "frequency": 0.0, "damping": 0.0, "residue": 0.0 });
+    let fixture = Fixture::from_value(&value).unwrap();
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let coupled = on(EffectKind::ChannelHighpass, Place::Response("4".into()), &[0.05]);
+    let heavy = on(EffectKind::AddedMass, Place::Body("B".into()), &[0.11, 0.05]);
+    let frfs = measured(&fixture, vec![heavy, coupled], (&four_pairs(), &lines), &hammer(21));
+    let kinds = |estimated: bool| {
+        let options = DiagnosisOptions { estimated, ..DiagnosisOptions::default() };
+        let diagnosis = Diagnosis::of(&fixture, &frfs, &options).unwrap();
+        diagnosis.findings.iter().map(|finding| finding.effect.kind).collect::<Vec<_>>()
+    };
+    assert_eq!(kinds(false), [EffectKind::AddedMass, EffectKind::ChannelHighpass]);
+    assert_eq!(kinds(true), [EffectKind::AddedMass]);
 }
 
 #[test]
