@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Strikes structures over time, and asks the program what of them their fixtures leave out.
 
-    python3 docs/development/checks/blows_with_scipy.py PROGRAM [--cases 30] [--seed 1] [--only null mass stiffness support gain] [--keep DIR]
+    python3 docs/development/checks/blows_with_scipy.py PROGRAM [--cases 30] [--seed 1] [--only null mass stiffness support gain] [--baseline] [--keep DIR]
 
 Nothing of the program's own mechanics is used: rigid bodies on dashpots and springs, integrated here by their complex modes with SciPy, sixteen times as fine as sampled, and an anti-alias filter before sampling. What is
 stated lies within its deviations of what is. Three to five blows at two points, their strength scattered by 30 to 50 %, pulses of 0.3 to 1.2 ms, 20 to 100 ms before them, records of 0.5 to 4 s that may end while the
@@ -17,7 +17,8 @@ structure still rings, noise of 0.02 to 0.5 % of the loudest response and 0.01 t
     support    a spring to ground
     gain       a response that reads 5 % low or high
 
-What is hidden has to be named first, with more than 0.5, and nothing else as surely; whether its 95 % interval holds the truth is told. Ends with status 1 where one is not right.
+What is hidden has to be named first, with more than 0.5, and nothing else as surely; whether its 95 % interval holds the truth is told. With `--baseline` the same structure was struck, in another test, before that was
+hidden in it, and what has changed since is asked. Ends with status 1 where one is not right.
 """
 import argparse
 import json
@@ -284,6 +285,7 @@ def main():
     parser.add_argument("--cases", type=int, default=30)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", nargs="+", choices=KINDS, default=KINDS)
+    parser.add_argument("--baseline", action="store_true")
     parser.add_argument("--keep", type=pathlib.Path)
     arguments = parser.parse_args()
     folder = arguments.keep or pathlib.Path(tempfile.mkdtemp())
@@ -302,7 +304,12 @@ def main():
             (own / "fixture.json").write_text(json.dumps(stated(file, 0.02 if kind == "stiffness" else 0.04, random), indent=1))
             (own / "truth.json").write_text(json.dumps({"structure": file, "hidden": hidden}, default=float))
             struck(Structure(file, hidden), file, outs, references, hidden, own / "blows.uff", random)
-            run = subprocess.run([arguments.program, "diagnose", str(own / "fixture.json"), str(own / "blows.uff"), "--json"], capture_output=True, text=True)
+            before = []
+            if arguments.baseline:
+                again = np.random.default_rng([arguments.seed, KINDS.index(kind), case, 1])
+                struck(Structure(file, {"kind": "null"}), file, outs, references, {"kind": "null"}, own / "before.uff", again)
+                before = ["--baseline", str(own / "before.uff")]
+            run = subprocess.run([arguments.program, "diagnose", str(own / "fixture.json"), *before, str(own / "blows.uff"), "--json"], capture_output=True, text=True)
             answer = json.loads(run.stdout) if run.returncode == 0 else {"verdict": run.stderr.strip().splitlines()[-1], "findings": []}
             is_right, holds = judged(answer, hidden)
             right += is_right
