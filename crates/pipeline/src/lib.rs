@@ -19,6 +19,8 @@
 //! * [`MeasuredFrfs`]: its FRFs at one level, recorded as such or estimated from its hits ([`HammerTest`]),
 //!   for analyses of their own;
 //! * [`diagnose`] with [`Options`]: the route above;
+//! * [`Alike`]: how a baseline and a recording are to be estimated from their hits, so that what differs is the
+//!   structure;
 //! * [`decompose`]: the way to the joint in a measurement, or to all joints ([`Decomposition`]);
 //! * [`Answer`]: which way it went ([`Outcome`]), the refitted and the repaired fixture, notes for the
 //!   reader;
@@ -61,6 +63,7 @@ mod measurement;
 mod modal_damping;
 mod options;
 mod route;
+mod two_states;
 
 pub use answer::{Answer, Outcome};
 pub use decompose::{DecomposeOptions, Decomposition, Joints, decompose};
@@ -71,3 +74,4 @@ pub use measurement::Measurement;
 pub use modal_damping::{MeasuredDamping, MeasuredDampingError, measured_damping};
 pub use options::Options;
 pub use route::{Progress, diagnose};
+pub use two_states::Alike;

@@ -6,7 +6,7 @@ use std::time::Duration;
 use clap::Args;
 use jointscope::cases::Command;
 use jointscope::diagnosis::Step;
-use jointscope::pipeline::{MeasuredFrfs, Options, Progress};
+use jointscope::pipeline::{Alike, MeasuredFrfs, Options, Progress};
 use jointscope::report::answer_report;
 use jointscope::spectra::FrfPair;
 use jointscope::{Answer, Band, DiagnosisOptions, answer_file, diagnose, model_frfs};
@@ -113,16 +113,15 @@ pub(super) fn diagnosed(
 ) -> Result<Answer, Refusal> {
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let measurement = arguments.recording.measurement(&fixture)?;
-    let estimate = arguments.estimation.for_models();
-    let baseline = match arguments.baseline.is_empty() {
-        true => None,
-        false => {
-            let recording = arguments.recording.of_files(&arguments.baseline);
-            let measured = MeasuredFrfs::of(&recording.measurement(&fixture)?, &estimate)
-                .and_then(|measured| measured.screened(&fixture));
-            Some(measured.map_err(|error| recording.unanswered(&error, &fixture))?.frfs)
-        }
-    };
+    let mut estimate = arguments.estimation.for_models();
+    let (mut baseline, mut unlike) = (None, None);
+    if !arguments.baseline.is_empty() {
+        let recording = arguments.recording.of_files(&arguments.baseline);
+        let before = recording.measurement(&fixture)?;
+        Alike { estimate, note: unlike } = Alike::of(&before, &measurement, &estimate);
+        let measured = MeasuredFrfs::of(&before, &estimate).and_then(|measured| measured.screened(&fixture));
+        baseline = Some(measured.map_err(|error| recording.unanswered(&error, &fixture))?.frfs);
+    }
     let options = Options {
         diagnosis: DiagnosisOptions {
             band: arguments.band.map(|band| (band.from, band.to)),
@@ -139,6 +138,7 @@ pub(super) fn diagnosed(
     let answer = diagnose(&fixture, &measurement, &options, watch);
     let mut answer = answer.map_err(|error| arguments.recording.unanswered(&error, &fixture))?;
     answer.notes.extend(arguments.estimation.unused_with(&measurement));
+    answer.notes.extend(unlike);
     Ok(answer)
 }
 

@@ -270,8 +270,9 @@ fn weighed(
         .and_then(|measured| measured.screened(&state))
         .map_err(|error| recording.unanswered(&error, &state))?;
     let observation = Observation::new(&measured.frfs, |_| true).map_err(|error| recording.refusal(error))?;
+    let seen = measured.as_recorded(&state).map_err(|error| state.refusal(error))?;
     let options = diagnosed.options(&arguments.points);
-    let weighed = weighed_by(&diagnosed.answer.fixture, &remaining, (&state, &observation), &options)
+    let weighed = weighed_by(&diagnosed.answer.fixture, &remaining, (&seen, &observation), &options)
         .map_err(|error| state.refusal(error))?;
     let files = [diagnosed.files(), arguments.second_test.clone()].concat();
     let notes = [diagnosed.answer.notes.clone(), measured.notes].concat();

@@ -4,7 +4,7 @@ use crate::common::{self, Bench};
 use jointscope::hits::Hit;
 use jointscope::recordings::hits_to_datasets;
 use jointscope::spectra::Channel;
-use jointscope::uff::{Data, Encoding};
+use jointscope::uff::{Abscissa, Data, Encoding};
 use jointscope_samples::{Noise, two_blocks_damped, with};
 
 pub(crate) const CUBIC: &str =
@@ -132,6 +132,29 @@ fn hits_that_ring_on_at_the_end_of_their_records_are_decomposed_under_a_window()
     for (expected, found) in expected.iter().flatten().zip(found.iter().flatten()) {
         assert!((found / expected - 1.0).abs() < 1e-3, "stiffness {found}, expected {expected}");
     }
+}
+
+#[test]
+fn a_baseline_whose_records_end_earlier_is_no_change_of_damping() {
+    let bench = Bench::new("hits-baseline");
+    bench.write("true.json", fixture("").replace("[0.02]", "[0.004, 0.005]"));
+    forces(&bench, &["1", "2"], &[300.0, 310.0, 280.0, 290.0, 300.0, 295.0]);
+    strike(&bench, 6);
+    bench.rewrite("hits.uff", "short.uff", |datasets| {
+        for dataset in datasets {
+            let Data::Real(values) = &mut dataset.data else { panic!("a history is real") };
+            values.truncate(1024);
+            if let Abscissa::Even { count, .. } = &mut dataset.abscissa {
+                *count = 1024;
+            }
+        }
+    });
+    let said = bench.done(&["diagnose", "true.json", "hits.uff", "--baseline", "short.uff", "-o", "out"]);
+    assert!(said.contains("Nothing has changed since the baseline"), "{said}");
+    let decay =
+        |said: &str| said.split("window of decay ").nth(1).unwrap().split(' ').next().unwrap().to_owned();
+    let alone = bench.done(&["diagnose", "true.json", "short.uff", "-o", "short"]);
+    assert_eq!(decay(&said), decay(&alone), "the longer of both windows");
 }
 
 #[test]
