@@ -305,6 +305,22 @@ impl Observation {
         values.fold((0.0, 0), |(chi2, count), index| (chi2 + square(index), count + 2))
     }
 
+    /// Mean square by which modelled values miss the lines below a frequency, Hz, in units of noise and of an
+    /// `error` of the larger of both values; zero where there are none.
+    pub(crate) fn misses_below(&self, modelled: &[Complex64], below: f64, error: f64) -> f64 {
+        let hz = self.lines().hz();
+        let counts = |index: &usize| hz[index % hz.len()] < below && self.weight[*index] > 0.0;
+        let square = |index: usize| {
+            let (measured, modelled) = (self.values()[index], modelled[index]);
+            let largest = measured.norm_sqr().max(modelled.norm_sqr());
+            (measured - modelled).norm_sqr() / (2.0 / self.weight[index] + error * error * largest)
+        };
+        let (sum, count) = (0..self.weight.len())
+            .filter(counts)
+            .fold((0.0, 0), |(sum, count), index| (sum + square(index), count + 1));
+        if count == 0 { 0.0 } else { sum / count as f64 }
+    }
+
     /// √(Σ|H_model − H_measured|² / Σ|H_measured|²) over all FRFs and lines.
     pub fn nrmse(&self, modelled: &[Complex64]) -> f64 {
         let (mut error, mut size) = (0.0, 0.0);

@@ -17,12 +17,13 @@ use crate::moved_sensor::MovedSensor;
 use crate::options::{DiagnosisError, DiagnosisOptions};
 use crate::search::Search;
 use crate::settings::effects::quantities::BEYOND_BELIEF;
+use crate::settings::statements::baseline::{LEFT_BY_BASELINE, LEFT_UNKNOWN, MISSES};
 use crate::settings::work::shares::OF_DOUBTS;
-use crate::{Baseline, Observation};
+use crate::{Baseline, Hypothesis, Observation};
 use by_lines::{Start, by_lines};
 use by_modes::{by_modes, judged_by_modes};
 use jointscope_findings::Verdict;
-use jointscope_fixture::{Effect, Fixture};
+use jointscope_fixture::{Effect, Fixture, Spread};
 use jointscope_spectra::{FrfPair, SpectraError};
 use parts::Given;
 
@@ -39,12 +40,19 @@ impl Ground {
         let without_effects = refitted.clone().with_wrong_quantities(fitter);
         let modal = compared_by_modes(given, &without_effects);
         // Modes lead to the nearest minimum where lines, peak beside peak, may end in another.
-        let without_effects = match &modal {
-            Some(modal) => Search { candidates: modal.candidates.clone(), ..without_effects }
-                .refitted_from(fitter, &modal.stated[0]),
-            None => refitted.refitted_widely(fitter).with_wrong_quantities(fitter),
+        let Some(modal) = modal else {
+            let without_effects = refitted.refitted_widely(fitter).with_wrong_quantities(fitter);
+            return Ground { without_effects, modal: None };
         };
-        Ground { without_effects, modal }
+        let without_effects = Search { candidates: modal.candidates.clone(), ..without_effects };
+        let starts = [&modal.stated[0], &modal.search.none.hypothesis];
+        let without_effects =
+            starts.iter().fold(without_effects, |at, start| at.refitted_from(fitter, start));
+        let modal = modal.beside(fitter, &without_effects.refitted);
+        let without_effects =
+            if modal.misses_below { without_effects.refitted_widely(fitter) } else { without_effects };
+        let modal = modal.beside(fitter, &without_effects.refitted);
+        Ground { without_effects, modal: Some(modal) }
     }
 
     /// The diagnosis of a structure that no sensor loads in some FRFs only.
@@ -249,7 +257,8 @@ fn from_modes<'a>(
     let explained = searched.as_ref().is_some_and(|search| explains(fitter, &search.repaired, true));
     // Modes that need no error of the model, or that do not tell all there is, beside lines that are not
     // explained: it is not the modes of the model that are in error.
-    let tells_all = !modal.is_incomplete_but_usable(fitter) || modal.has_no_rival(fitter);
+    let tells_all =
+        !(modal.misses_below || modal.is_incomplete_but_usable(fitter)) || modal.has_no_rival(fitter);
     let not_in_error = modal.search.best.exact || modal.has_right_modes() || !tells_all;
     if !explained && !not_in_error {
         return None;
@@ -300,7 +309,63 @@ pub(crate) fn since(
         Some(since(part, &baseline.reduced(|_| true, seen)?, Some(known))?.0)
     };
     let given = Given { fitter, fixture, exact, lines_decide: false, division: division.as_ref() };
-    let parts = judged_by_modes(given, &as_stated, &modal, &without);
+    let by_lines = match calibrated_on_lines(fitter, &modal, (&baseline, &calibrated.hypothesis)) {
+        Some(then) => changed_by_lines(fitter, &then, (fixture, options))?,
+        None => None,
+    };
+    let parts = by_lines.unwrap_or_else(|| judged_by_modes(given, &as_stated, &modal, &without));
     let baseline = Baseline { observation: baseline, calibrated, modes: before.modes };
     Ok(Parts { baseline_error: Some(before.error), baseline: Some(baseline), ..parts })
+}
+
+/// The fixture as the lines of a `baseline` have it, where what modes tell has changed does not explain the lines
+/// now: where it leaves no more than noise of the baseline's, and misses much of these.
+fn calibrated_on_lines(
+    fitter: &Fitter,
+    modal: &ModalJudgement,
+    (baseline, by_modes): (&Observation, &Hypothesis),
+) -> Option<Hypothesis> {
+    let leaves = |hypothesis: &Hypothesis, observation: &Observation| {
+        let left = Fit::at(hypothesis.clone(), observation)?.chi2_per_dof(observation);
+        Some((left, evidence::explained(observation, fitter.settings)))
+    };
+    let (changed, noise) = leaves(&modal.stated[1], fitter.observation)?;
+    if modal.names_all() && changed < noise {
+        return None;
+    }
+    let then = fitter.on(baseline).local(by_modes, None, f64::INFINITY)?.hypothesis;
+    let (left, noise) = leaves(&then, baseline)?;
+    let (now, _) = leaves(&then, fitter.observation)?;
+    (left < noise && now > MISSES).then_some(then)
+}
+
+/// What explains the lines down to their noise beside the fixture as it is `calibrated`, its quantities known
+/// that much better than they were stated; `None` where nothing does.
+fn changed_by_lines(
+    fitter: &Fitter,
+    calibrated: &Hypothesis,
+    (fixture, options): (&Fixture, &DiagnosisOptions),
+) -> Result<Option<Parts>, DiagnosisError> {
+    let Ok(mut then) = calibrated.to_fixture() else { return Ok(None) };
+    let stated = then.quantities();
+    for (quantity, stated) in then.quantities_mut().into_iter().zip(&stated) {
+        let deviation = stated.std.map_or(LEFT_UNKNOWN * stated.value.abs(), |std| LEFT_BY_BASELINE * std);
+        quantity.quantity.spread = Spread::Stated(deviation);
+    }
+    let alone = DiagnosisOptions { baseline: None, exact: true, ..options.clone() };
+    let found = judged(fitter, &then, &alone, true)?;
+    if found.verdict != Verdict::Explained || found.model_error.is_some() {
+        return Ok(None);
+    }
+    // What is said of quantities is said against what is stated.
+    let as_stated =
+        |fit: &Fit| Fit::at(fit.hypothesis.in_fixture(fixture, options.exact), fitter.observation);
+    let (Some(refitted), Some(repaired)) =
+        (as_stated(&found.search.refitted), as_stated(&found.search.repaired))
+    else {
+        return Ok(None);
+    };
+    let stated = [&refitted, &repaired].map(|fit| fit.hypothesis.clone());
+    let search = Search { refitted, repaired, ..found.search };
+    Ok(Some(Parts { stated: Some(stated), search, ..found }))
 }

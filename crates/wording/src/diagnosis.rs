@@ -65,6 +65,10 @@ fn by_its_quantities(diagnosis: &Diagnosis) -> String {
 fn consistent(diagnosis: &Diagnosis) -> String {
     let [nominal, refitted, _] = diagnosis.chi2_per_dof();
     match refitted < 0.5 * nominal {
+        _ if diagnosis.baseline.is_some() => format!(
+            "Nothing has changed since the baseline: the fixture explains the FRFs down to their noise (χ² per degree of freedom {}).",
+            figures(refitted)
+        ),
         true => format!(
             "Nothing is left out: within its stated tolerances the fixture explains the FRFs down to their noise (χ² per degree of \
              freedom {}, {} before the refit).",
@@ -82,8 +86,12 @@ fn explained(diagnosis: &Diagnosis) -> String {
     let [_, refitted, repaired] = diagnosis.chi2_per_dof();
     let [with, without] = apart([repaired, refitted], 3);
     let [error_with, error_without] = errors(diagnosis);
+    let what = match &diagnosis.baseline {
+        Some(_) => "Since the baseline this has changed:",
+        None => "The fixture leaves out",
+    };
     format!(
-        "The fixture leaves out {}; with {} the FRFs are explained down to their noise (χ² per degree of freedom {with}; without \
+        "{what} {}; with {} the FRFs are explained down to their noise (χ² per degree of freedom {with}; without \
          {without}{}; error {error_with} %, without {error_without} %).",
         found(diagnosis),
         it(diagnosis),

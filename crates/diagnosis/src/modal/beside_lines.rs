@@ -10,6 +10,7 @@ use crate::fitter::Fitter;
 use crate::modal::judgement::ModalJudgement;
 use crate::modal::searcher::Named;
 use crate::settings::ModalSettings;
+use crate::settings::modal::judgement::MISSED_BELOW;
 use jointscope_findings::Verdict;
 use jointscope_fixture::{Effect, EffectKind};
 
@@ -36,8 +37,17 @@ fn explaining_lines(fitter: &Fitter, named: &Named, limit: f64) -> Option<Fit> {
 }
 
 impl ModalJudgement {
-    /// Whether the comparison rests on modes that may not be all there are, a free fit short of the noise or
-    /// modes without a partner, or on records that are not alike, and a search by lines may do better.
+    /// The same beside the fixture refitted to lines.
+    pub(crate) fn beside(self, fitter: &Fitter, refitted: &Fit) -> Self {
+        let (error, most) = MISSED_BELOW;
+        let below = self.features.recorded.band.0;
+        let misses_below = fitter.observation.misses_below(&refitted.predicted, below, error) > most;
+        ModalJudgement { misses_below, ..self }
+    }
+
+    /// Whether the comparison rests on modes that may not be all there are, a free fit short of the noise,
+    /// modes without a partner or lines missed below them all, or on records that are not alike, and a search
+    /// by lines may do better.
     pub(crate) fn is_dubious(&self, fitter: &Fitter) -> bool {
         let alone = self.search.best.fit.paired.pairing.alone();
         // Records taken one after another, their noise told by scatter alone: an outlier among their gains
@@ -48,7 +58,7 @@ impl ModalJudgement {
         // against itself.
         let gain = self.search.best.fit.has_gains_beyond(&self.features.known.scales);
         let is_doubted = || alone != 0.0 || unsure || gain || self.is_beyond_errors(fitter);
-        self.is_incomplete_but_usable(fitter) || (has_poles && is_doubted())
+        self.is_incomplete_but_usable(fitter) || self.misses_below || (has_poles && is_doubted())
     }
 
     /// Whether errors of a structure's model, however large, leave more than noise: a sensor that loads some
@@ -122,10 +132,11 @@ impl ModalJudgement {
                 || nothing.is_some_and(|none| named.fit.ln - none > odds)
         };
         let all: Vec<&Named> = all.filter(asked).collect();
-        // Broad modes lead to where lines are far from their optimum yet: the foremost has all the time.
+        // Broad modes lead to where lines are far from their optimum yet: the foremost has all the time. So have
+        // all where modes do not tell the lowest lines.
         let is_foremost = |named: &Named| self.search.singles.first().is_some_and(|f| f.names == named.names);
         let explaining = |named: &&Named| {
-            let fit = match is_foremost(named) {
+            let fit = match is_foremost(named) || self.misses_below {
                 true => explaining_lines(fitter, named, f64::INFINITY),
                 false => fitted_to_lines(fitter, named),
             };

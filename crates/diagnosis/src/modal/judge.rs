@@ -70,6 +70,7 @@ impl Judge<'_> {
             states_gain: false,
             is_exact_but_for_its_law: problem.is_exact_but_for_its_law(best, self.searcher.settings.exact),
             since_baseline: self.searcher.calibrated,
+            misses_below: false,
             stated,
             covariance,
             features,

@@ -42,6 +42,9 @@ pub(crate) struct ModalJudgement {
     pub is_exact_but_for_its_law: bool,
     /// Whether it is of what has changed since a baseline.
     pub since_baseline: bool,
+    /// Whether the fixture refitted to lines misses those below all modes that were compared, by more than a
+    /// model may err.
+    pub misses_below: bool,
     /// The fixture by itself and the best hypothesis, at the most probable sizes of error: what is said of
     /// quantities and effects.
     pub stated: [Hypothesis; 2],
@@ -86,11 +89,12 @@ impl ModalJudgement {
     }
 
     /// The same where lines find nothing either, and modes may not tell all there is: what a free fit leaves of
-    /// the recording, or a mode of its own, is no error of a model that is usual.
+    /// the recording, a mode of its own, or what lines show below all modes, is no error of a model that is
+    /// usual.
     pub(crate) fn where_incomplete(&self, fitter: &Fitter) -> Self {
         let leaves = self.free_fit_chi2_per_dof > fitter.settings.modal.slight;
         let alone = self.search.best.fit.paired.pairing.alone() != 0.0;
-        match self.verdict == Verdict::Consistent && (leaves || alone) {
+        match self.verdict == Verdict::Consistent && (leaves || alone || self.misses_below) {
             true => self.withdrawn(),
             false => self.clone(),
         }

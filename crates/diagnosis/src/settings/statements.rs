@@ -4,6 +4,13 @@
 pub(crate) mod baseline {
     /// Standard deviations beyond which a change of a mode is more than noise.
     pub(crate) const MORE_THAN_NOISE: f64 = 3.0;
+    /// χ² per degree of freedom of the lines now, by the fixture as the baseline's lines have it, from which
+    /// these are asked for what has changed.
+    pub(crate) const MISSES: f64 = 3.0;
+    /// Share of its stated deviation by which a quantity may be off that a baseline has put in its place …
+    pub(crate) const LEFT_BY_BASELINE: f64 = 0.2;
+    /// … and of its value, where it was not stated at all.
+    pub(crate) const LEFT_UNKNOWN: f64 = 1e-3;
     /// Modes from which a change that they share is no coincidence.
     pub(crate) const FEWEST_ALIKE: usize = 3;
     /// Share of a change by which the modes that share it may differ.

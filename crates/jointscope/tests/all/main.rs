@@ -2,6 +2,7 @@
 #![allow(clippy::panic, clippy::unwrap_used)] // helpers of tests fail as tests do
 
 mod against_the_rig;
+mod below_the_modes;
 mod common;
 mod comparison;
 mod diagnosis;
