@@ -55,6 +55,7 @@ mod places;
 mod predicting;
 mod prior;
 mod problem;
+mod repetition;
 mod search;
 mod searcher;
 mod sizes;

@@ -310,7 +310,13 @@ pub(crate) fn since(
     };
     let given = Given { fitter, fixture, exact, lines_decide: false, division: division.as_ref() };
     let by_lines = match calibrated_on_lines(fitter, &modal, (&baseline, &calibrated.hypothesis)) {
-        Some(then) => changed_by_lines(fitter, &then, (fixture, options))?,
+        Some(then) => {
+            let told = changed_by_lines(fitter, &then, (fixture, options))?;
+            let is_change = |found: &Parts| {
+                modal.is_beyond_repetition(&fitter.settings.modal, [&then, &found.search.repaired.hypothesis])
+            };
+            told.filter(is_change)
+        }
         None => None,
     };
     let parts = by_lines.unwrap_or_else(|| judged_by_modes(given, &as_stated, &modal, &without));
