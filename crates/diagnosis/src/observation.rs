@@ -298,9 +298,7 @@ impl Observation {
     /// χ² of modelled values on the lines from a frequency on, Hz, and the number of real values that count
     /// there.
     pub(crate) fn chi2_from(&self, modelled: &[Complex64], from: f64) -> (f64, usize) {
-        let hz = self.lines().hz();
-        let counts = |index: &usize| hz[index % hz.len()] >= from && self.weight[*index] > 0.0;
-        let values = (0..self.weight.len()).filter(counts);
+        let values = self.counted_where(|hz| hz >= from);
         let square = |index: usize| self.weight[index] * (self.values()[index] - modelled[index]).norm_sqr();
         values.fold((0.0, 0), |(chi2, count), index| (chi2 + square(index), count + 2))
     }
@@ -308,17 +306,20 @@ impl Observation {
     /// Mean square by which modelled values miss the lines below a frequency, Hz, in units of noise and of an
     /// `error` of the larger of both values; zero where there are none.
     pub(crate) fn misses_below(&self, modelled: &[Complex64], below: f64, error: f64) -> f64 {
-        let hz = self.lines().hz();
-        let counts = |index: &usize| hz[index % hz.len()] < below && self.weight[*index] > 0.0;
+        let values = self.counted_where(|hz| hz < below);
         let square = |index: usize| {
             let (measured, modelled) = (self.values()[index], modelled[index]);
             let largest = measured.norm_sqr().max(modelled.norm_sqr());
             (measured - modelled).norm_sqr() / (2.0 / self.weight[index] + error * error * largest)
         };
-        let (sum, count) = (0..self.weight.len())
-            .filter(counts)
-            .fold((0.0, 0), |(sum, count), index| (sum + square(index), count + 1));
+        let (sum, count) = values.fold((0.0, 0), |(sum, count), index| (sum + square(index), count + 1));
         if count == 0 { 0.0 } else { sum / count as f64 }
+    }
+
+    /// The values that count on such lines, Hz, by their places.
+    fn counted_where(&self, line: impl Fn(f64) -> bool) -> impl Iterator<Item = usize> {
+        let hz = self.lines().hz();
+        (0..self.weight.len()).filter(move |index| line(hz[index % hz.len()]) && self.weight[*index] > 0.0)
     }
 
     /// √(Σ|H_model − H_measured|² / Σ|H_measured|²) over all FRFs and lines.

@@ -64,11 +64,13 @@ fn by_its_quantities(diagnosis: &Diagnosis) -> String {
 
 fn consistent(diagnosis: &Diagnosis) -> String {
     let [nominal, refitted, _] = diagnosis.chi2_per_dof();
-    match refitted < 0.5 * nominal {
-        _ if diagnosis.baseline.is_some() => format!(
+    if diagnosis.baseline.is_some() {
+        return format!(
             "Nothing has changed since the baseline: the fixture explains the FRFs down to their noise (χ² per degree of freedom {}).",
             figures(refitted)
-        ),
+        );
+    }
+    match refitted < 0.5 * nominal {
         true => format!(
             "Nothing is left out: within its stated tolerances the fixture explains the FRFs down to their noise (χ² per degree of \
              freedom {}, {} before the refit).",

@@ -4,7 +4,7 @@ use crate::Hypothesis;
 use crate::modal::judgement::ModalJudgement;
 use crate::settings::ModalSettings;
 use jointscope_model_error::{ModelledMode, ModelledModes};
-use num_complex::Complex64;
+use std::f64::consts::SQRT_2;
 
 impl ModalJudgement {
     /// Whether some mode of the model `now` differs from what it was `then` by more than a test that is repeated
@@ -26,11 +26,12 @@ impl ModalJudgement {
 fn is_beyond(settings: &ModalSettings, was: &ModelledMode, is: &ModelledMode) -> bool {
     let (usual, (times, _)) = (settings.repeated, settings.adequate);
     let ratio = |is: f64, was: f64| (is / was).ln().abs();
-    let size = |residues: &[Complex64]| residues.iter().map(|a| a.norm_sqr()).sum::<f64>().sqrt();
     let both = was.residues.iter().zip(&is.residues);
-    let apart: Vec<Complex64> = both.map(|(was, is)| is - was).collect();
-    let residues = 2f64.sqrt() * usual.shape.max(usual.gain);
+    let apart: f64 = both.map(|(was, is)| (is - was).norm_sqr()).sum();
+    let size: f64 = was.residues.iter().map(|a| a.norm_sqr()).sum();
+    // Of a response's shape and of a reference's.
+    let residues = SQRT_2 * usual.shape.max(usual.gain);
     ratio(is.pole.omega, was.pole.omega) > times * usual.frequency
         || ratio(is.pole.damping_ratio, was.pole.damping_ratio) > times * usual.damping
-        || size(&apart) > times * residues * size(&was.residues)
+        || apart.sqrt() > times * residues * size.sqrt()
 }
