@@ -38,7 +38,8 @@ pub(crate) fn since(
         Some(since(part, &baseline.reduced(|_| true, seen)?, Some(known))?.0)
     };
     let given = Given { fitter, fixture, exact, lines_decide: false, division: division.as_ref() };
-    let by_lines = changed_by_lines(fitter, (&modal, &baseline, &calibrated.hypothesis), (fixture, options))?;
+    let states = (&baseline, &calibrated.hypothesis);
+    let by_lines = changed_by_lines(given, (&as_stated.nominal, &modal), states, options)?;
     let parts = by_lines.unwrap_or_else(|| judged_by_modes(given, &as_stated, &modal, &without));
     let baseline = Baseline { observation: baseline, calibrated, modes: before.modes };
     Ok(Parts { baseline_error: Some(before.error), baseline: Some(baseline), ..parts })
@@ -68,21 +69,21 @@ fn calibrated_on_lines(
 /// What explains the lines down to their noise beside the fixture as the baseline's have it, and is beyond what a
 /// repetition shows, where modes do not tell it; `None` where nothing does.
 fn changed_by_lines(
-    fitter: &Fitter,
-    (modal, baseline, by_modes): (&ModalJudgement, &Observation, &Hypothesis),
-    (fixture, options): (&Fixture, &DiagnosisOptions),
+    Given { fitter, fixture, exact, .. }: Given,
+    (nominal, modal): (&Fit, &ModalJudgement),
+    (baseline, by_modes): (&Observation, &Hypothesis),
+    options: &DiagnosisOptions,
 ) -> Result<Option<Parts>, DiagnosisError> {
     let Some(calibrated) = calibrated_on_lines(fitter, modal, (baseline, by_modes)) else { return Ok(None) };
     let Ok(then) = calibrated.to_fixture() else { return Ok(None) };
-    let then = known_by_baseline(then);
+    let then = known_by_baseline(then, exact);
     let alone = DiagnosisOptions { baseline: None, exact: true, ..options.clone() };
     let found = judged(fitter, &then, &alone, true)?;
     if found.verdict != Verdict::Explained || found.model_error.is_some() {
         return Ok(None);
     }
     // What is said of quantities is said against what is stated.
-    let as_stated =
-        |fit: &Fit| Fit::at(fit.hypothesis.in_fixture(fixture, options.exact), fitter.observation);
+    let as_stated = |fit: &Fit| Fit::at(fit.hypothesis.in_fixture(fixture, exact), fitter.observation);
     let (Some(refitted), Some(repaired)) =
         (as_stated(&found.search.refitted), as_stated(&found.search.repaired))
     else {
@@ -92,13 +93,13 @@ fn changed_by_lines(
         return Ok(None);
     }
     let stated = [&refitted, &repaired].map(|fit| fit.hypothesis.clone());
-    let search = Search { refitted, repaired, ..found.search };
+    let search = Search { nominal: nominal.clone(), refitted, repaired, ..found.search };
     Ok(Some(Parts { stated: Some(stated), search, ..found }))
 }
 
 /// A fixture whose quantities a baseline has put where they are: each known that much better than it is stated.
-fn known_by_baseline(mut fixture: Fixture) -> Fixture {
-    let stated = fixture.quantities();
+fn known_by_baseline(mut fixture: Fixture, exact: bool) -> Fixture {
+    let stated = if exact { fixture.quantities_exact() } else { fixture.quantities() };
     for (known, stated) in fixture.quantities_mut().into_iter().zip(&stated) {
         let deviation = stated.std.map_or(LEFT_UNKNOWN * stated.value.abs(), |std| LEFT_BY_BASELINE * std);
         known.quantity.spread = Spread::Stated(deviation);

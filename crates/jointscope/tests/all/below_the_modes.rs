@@ -71,6 +71,8 @@ fn what_has_changed_on_the_lowest_lines_alone_is_told_of_them_too() {
     let changed = since(tested(vec![held], 8));
     let [found] = &changed.findings[..] else { panic!("{}", told(&changed)) };
     assert!(found.effect.kind == EffectKind::Support && found.effect.place == Place::Body("A".into()));
+    let as_stated = Fixture::to_json(&changed.search.nominal.hypothesis.to_fixture().unwrap());
+    assert_eq!(as_stated, hung_up().to_json(), "the fixture as stated, not as the baseline has it");
     assert!(
         changed.says().contains("Since the baseline this has changed: support of body A"),
         "{}",
