@@ -9,8 +9,8 @@
 //! changes there, and not to the hundredth that A leaves it.
 
 use crate::choices::Choice;
-use crate::normal::chi2_above;
 use crate::{Decomposed, Together};
+use jointscope_inference::chi_squared_above;
 use jointscope_linalg::{Cholesky, generalized_symmetric_eigen};
 
 /// Probability below which two tests do not agree; of several pairs, divided by their number.
@@ -92,7 +92,7 @@ impl Together {
             chi2 += along * along / variance;
             degrees += 1;
         }
-        (degrees > 0).then(|| chi2_above(chi2, degrees))
+        (degrees > 0).then(|| chi_squared_above(chi2, degrees as f64))
     }
 }
 

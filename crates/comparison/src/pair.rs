@@ -2,9 +2,9 @@
 
 use crate::by_law::ByLaw;
 use crate::laws_in_common::LawsInCommon;
-use crate::normal::{chi2_above, larger_magnitude, mahalanobis, mixed_interval, mixed_ratio_interval};
+use crate::normal::{larger_magnitude, mahalanobis, mixed_interval, mixed_ratio_interval};
 use crate::{Decomposed, Kind, Number, Together};
-use jointscope_inference::{SIGNIFICANT, Z95, interval95};
+use jointscope_inference::{SIGNIFICANT, Z95, chi_squared_above, interval95};
 use serde::Serialize;
 
 /// A value with its standard deviation and 95 % interval, SI.
@@ -81,7 +81,7 @@ impl Equality {
 
     fn of(differences: &[f64], covariance: &[f64]) -> Option<Self> {
         let (chi2, degrees) = mahalanobis(differences, covariance)?;
-        Some(Equality { chi2, degrees, p_value: chi2_above(chi2, degrees) })
+        Some(Equality { chi2, degrees, p_value: chi_squared_above(chi2, degrees as f64) })
     }
 
     /// Of several joints, by every two of them.

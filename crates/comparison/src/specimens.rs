@@ -6,12 +6,10 @@
 //! Q(τ²) = yᵀ (A V Aᵀ + τ²)⁻¹ y is χ² with n − 1 degrees of freedom for the true τ: its quantiles give an
 //! exact interval, Q = n − 1 the estimate (Mandel and Paule), Q(0) the test of equal specimens.
 
-use crate::normal::{chi2_above, chi2_quantile};
 use crate::{FigureInterval, Number, Together};
-use jointscope_inference::{SIGNIFICANT, Z95};
+use jointscope_inference::{SIGNIFICANT, Z95, chi_squared_above, chi_squared_exceeded, student_exceeded};
 use jointscope_linalg::{Cholesky, dot};
 use serde::Serialize;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Specimens of one kind.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -88,10 +86,10 @@ impl Scatter {
         let own = contrasts.trace / degrees as f64;
         let whole = covariance.iter().sum::<f64>() / (n * n) as f64;
         let common = (whole - own / n as f64).max(0.0);
-        let t = StudentsT::new(0.0, 1.0, degrees as f64).map_or(Z95, |t| t.inverse_cdf(0.975));
+        let t = student_exceeded(0.025, degrees as f64);
         // A mean is never known better than its values are measured.
         let scatter = scatter.max(own);
-        let highest = chi2_quantile(0.975, degrees);
+        let highest = chi_squared_exceeded(0.975, degrees as f64);
         let has_upper = contrasts.q(0.0) > highest;
         let half = (t * t * scatter / n as f64 + Z95 * Z95 * common).sqrt();
         let std = (scatter / n as f64 + common).sqrt();
@@ -100,9 +98,12 @@ impl Scatter {
             unit,
             mean: FigureInterval { value: mean, std, ci95: [mean - half, mean + half] },
             between: root(degrees as f64),
-            between_ci95: (root(chi2_quantile(0.025, degrees)), has_upper.then(|| root(highest))),
+            between_ci95: (
+                root(chi_squared_exceeded(0.025, degrees as f64)),
+                has_upper.then(|| root(highest)),
+            ),
             measurement: own.max(0.0).sqrt(),
-            p_value: if size > 0.0 { chi2_above(contrasts.q(0.0), degrees) } else { 1.0 },
+            p_value: if size > 0.0 { chi_squared_above(contrasts.q(0.0), degrees as f64) } else { 1.0 },
         }
     }
 }

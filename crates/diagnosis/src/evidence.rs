@@ -9,7 +9,6 @@ use crate::settings::Settings;
 use crate::settings::evidence::strictly::{MOST_EXCESS, UNCERTAINTY_SHARE};
 use crate::settings::evidence::unlisted::MOST_UNLISTED;
 use crate::{Hypothesis, Observation};
-use statrs::distribution::{ContinuousCDF, Normal};
 
 /// χ² per degree of freedom up to which a fit leaves no more than noise.
 pub(crate) fn explained(observation: &Observation, settings: &Settings) -> f64 {
@@ -55,11 +54,6 @@ pub(crate) fn probabilities(fitter: &Fitter, best: &Fit, costs: &[f64]) -> Vec<f
 pub(crate) fn nothing_can_be_stated(fitter: &Fitter, best: &Fit, candidates: usize) -> bool {
     let hypotheses = candidates as f64 + 1.0;
     hypotheses / (hypotheses + unlisted(fitter, best)) < fitter.settings.evidence.stated
-}
-
-/// Probability of a standard normal above `z`.
-pub(crate) fn upper_tail(z: f64) -> f64 {
-    Normal::standard().sf(z)
 }
 
 /// Whether a fit leaves no more than noise, its quantities no farther than chance; `strictly` not a tenth of

@@ -1,6 +1,6 @@
 //! Departures that are larger than chance makes them.
 
-use statrs::function::gamma::gamma_ur;
+use crate::chi_squared_above;
 
 /// Probability below which departures are no chance.
 const NO_CHANCE: f64 = 0.01;
@@ -17,7 +17,7 @@ pub fn birge_ratio(squares: f64, expected: f64) -> f64 {
         return 1.0;
     }
     let degrees = expected.max(1.0);
-    let by_chance = gamma_ur(0.5 * degrees, 0.5 * ratio * degrees);
+    let by_chance = chi_squared_above(ratio * degrees, degrees);
     if by_chance < NO_CHANCE { ratio } else { 1.0 }
 }
 

@@ -14,6 +14,7 @@
 //! * [`Covariance`], [`jackknife`], [`autocorrelation`], [`variance_inflation`]: uncertainty;
 //! * [`birge_ratio`]: by how much departures exceed what chance makes of them;
 //! * [`interval95`], [`Z95`], [`SIGNIFICANT`]: the one convention of intervals and tests;
+//! * [`normal_below`], [`chi_squared_above`], [`fisher_above`], …: tails of the distributions they rest on;
 //! * [`QuadraticLikelihood`]: what one recording tells of parameters that others tell of as well, put
 //!   together in closed form;
 //! * [`each`]: many fits on all threads.
@@ -53,6 +54,7 @@
 
 mod birge;
 mod descent;
+mod distributions;
 mod interval;
 mod likelihood;
 mod noise;
@@ -66,6 +68,9 @@ mod uncertainty;
 
 pub use birge::birge_ratio;
 pub use descent::{Descent, descend};
+pub use distributions::{
+    chi_squared_above, chi_squared_exceeded, fisher_above, normal_above, normal_below, student_exceeded,
+};
 pub use interval::{SIGNIFICANT, Z95, interval95};
 pub use likelihood::QuadraticLikelihood;
 pub use noise::inflated_weight;

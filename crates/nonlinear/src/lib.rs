@@ -38,7 +38,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod distribution;
 mod error;
 mod estimates;
 mod force_state;

@@ -6,9 +6,8 @@ use super::smallest_eigenvalue::as_low_if_zero;
 use super::uncertainty::tolerance_inflation;
 use crate::settings::noise::EXPLAINED;
 use crate::settings::symmetry::{ANOTHER_OPTIMUM, LARGE_GAIN, MOST_ROUNDS};
-use jointscope_inference::{Covariance, NormalEquations, SIGNIFICANT};
+use jointscope_inference::{Covariance, NormalEquations, SIGNIFICANT, chi_squared_above, normal_below};
 use serde::Serialize;
-use std::f64::consts::SQRT_2;
 
 /// Probabilities of FRFs that speak at least as much against a property, if the joint has it. Nothing where
 /// it cannot be tested.
@@ -73,16 +72,12 @@ pub(super) fn not_negative(
 
 /// P(at least this gain in χ² | a joint of this law that is reciprocal).
 pub(super) fn by_chance(law: &Dynamics, gain: f64) -> f64 {
-    let half = 0.5 * gain.max(0.0);
-    match law.asymmetries() {
-        1 => statrs::function::erf::erfc(half.sqrt()),
-        _ => (-half).exp(),
-    }
+    chi_squared_above(gain.max(0.0), law.asymmetries() as f64)
 }
 
 /// P(an estimate this low | zero).
 fn below_zero(value: f64, std: f64) -> Option<f64> {
-    (std > 0.0).then(|| 0.5 * statrs::function::erf::erfc(-value / (std * SQRT_2)))
+    (std > 0.0).then(|| normal_below(value / std))
 }
 
 /// What is known of a joint whose k and c are free of symmetry.

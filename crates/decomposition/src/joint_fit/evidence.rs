@@ -13,7 +13,7 @@
 
 use super::law::{Dynamics, Form};
 use crate::settings::priors::{CHANGE_RANGE, LOSS_RANGE, MASS_RANGE, WIDTHS};
-use jointscope_inference::{NormalEquations, Parameter};
+use jointscope_inference::{NormalEquations, Parameter, normal_above};
 use jointscope_linalg::Cholesky;
 use std::ops::Range;
 
@@ -108,11 +108,10 @@ fn width([least, largest]: [f64; 2], place: usize) -> f64 {
 
 /// ln(2·P(x > 0)) of a normal x.
 fn ln_twice_above_zero(mean: f64, std: f64) -> f64 {
-    let z = -mean / (std * std::f64::consts::SQRT_2);
-    match z {
-        // erfc(z) → e^(−z²)/(z√π).
-        z if z > 20.0 => -z * z - (z * std::f64::consts::PI.sqrt()).ln(),
-        _ => statrs::function::erf::erfc(z).ln(),
+    match -mean / std {
+        // P(x > z) → e^(−z²/2)/(z√(2π)).
+        z if z > 28.0 => -0.5 * z * z - (z * std::f64::consts::FRAC_PI_2.sqrt()).ln(),
+        z => (2.0 * normal_above(z)).ln(),
     }
 }
 

@@ -15,6 +15,7 @@
 //! only what λ varies by to first order counts.
 
 use crate::settings::symmetry::PROJECTION_ROUNDS;
+use jointscope_inference::normal_below;
 use jointscope_linalg::Cholesky;
 
 /// Elements 11, 12, 22 of a symmetric matrix.
@@ -58,7 +59,7 @@ pub(super) fn as_low_if_zero(
             let (y, z) = (SPACING * f64::from(i), SPACING * f64::from(j));
             let weight = (-0.5 * (y * y + z * z)).exp();
             let at = std::array::from_fn(|e| edge[e] + y * first[e] + z * second[e]);
-            sum += weight * below((lowest - smallest(at)) / deviation);
+            sum += weight * normal_below((lowest - smallest(at)) / deviation);
             total += weight;
         }
     }
@@ -75,11 +76,6 @@ fn gradient([a, b, d]: Elements) -> Elements {
     let angle = 0.5 * b.atan2(0.5 * (a - d));
     let (v, w) = (-angle.sin(), angle.cos());
     [v * v, 2.0 * v * w, w * w]
-}
-
-/// P(z ≤ x) of a standard normal z.
-fn below(x: f64) -> f64 {
-    0.5 * statrs::function::erf::erfc(-x / std::f64::consts::SQRT_2)
 }
 
 fn dot(a: Elements, b: Elements) -> f64 {
@@ -160,7 +156,7 @@ mod tests {
     fn linear(found: Elements, covariance: &[[f64; 3]; 3]) -> f64 {
         let by = gradient(found);
         let variance: f64 = (0..9).map(|e| by[e / 3] * by[e % 3] * covariance[e / 3][e % 3]).sum();
-        below(smallest(found) / variance.sqrt())
+        normal_below(smallest(found) / variance.sqrt())
     }
 
     fn covariance(columns: [f64; 9], size: f64) -> [[f64; 3]; 3] {

@@ -1,8 +1,8 @@
 //! ln ω of each mode in each FRF, taken apart into what goes with the response and what goes with the
 //! reference: weighted least squares.
 
+use jointscope_inference::{chi_squared_above, fisher_above};
 use jointscope_linalg::Cholesky;
-use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 
 /// One FRF's word on one mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -189,15 +189,11 @@ impl Table {
 /// Probability of a χ² as large: by the variances as stated, or where they had to be inflated, by the ratio
 /// to what `left` degrees of freedom leave.
 pub(super) fn chance(chi2: f64, degrees: usize, inflation: f64, left: usize) -> f64 {
-    if degrees == 0 {
-        return 1.0;
+    let (degrees, left) = (degrees as f64, left as f64);
+    match inflation > 1.0 {
+        true => fisher_above(chi2 / (degrees * inflation), degrees, left),
+        false => chi_squared_above(chi2, degrees),
     }
-    let upper = match inflation > 1.0 {
-        true => FisherSnedecor::new(degrees as f64, left as f64)
-            .map(|law| law.sf(chi2 / (degrees as f64 * inflation))),
-        false => return ChiSquared::new(degrees as f64).map_or(1.0, |law| law.sf(chi2)),
-    };
-    upper.unwrap_or(1.0)
 }
 
 #[cfg(test)]

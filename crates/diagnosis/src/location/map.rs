@@ -8,13 +8,12 @@ use super::problem::{Iterate, Parameters, Problem};
 use super::recorded::{Recorded, most_informative};
 use super::sites::sites;
 use super::{BandMisfit, LineEstimate, Location, Site};
-use crate::evidence::upper_tail;
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::observation::excess;
 use crate::settings::Settings;
 use crate::{Hypothesis, Observation, Watch};
-use jointscope_inference::{each, each_used_up};
+use jointscope_inference::{each, each_used_up, normal_above};
 use jointscope_linalg::Cholesky;
 use num_complex::Complex64;
 
@@ -196,7 +195,7 @@ fn location(problem: &Problem, state: &Iterate) -> Location {
         p_value: if degrees == 0 {
             1.0
         } else {
-            upper_tail(excess(chi2_per_dof, degrees, observation.noise_uncertainty()))
+            normal_above(excess(chi2_per_dof, degrees, observation.noise_uncertainty()))
         },
         bands: (0..bands).map(band).collect(),
         frfs: observation

@@ -17,8 +17,7 @@ use crate::settings::modal::along::{
 };
 use jointscope_findings::Estimate;
 use jointscope_fixture::Effect;
-use statrs::function::erf::erfc;
-use std::f64::consts::SQRT_2;
+use jointscope_inference::normal_below;
 use std::ops::Range;
 
 /// Halvings that find an end of an interval.
@@ -88,9 +87,8 @@ impl Along {
     fn quantiles<const N: usize>(&self, index: usize, shares: [f64; N]) -> [f64; N] {
         let least = |held: &Held| held.stds[index].max(f64::MIN_POSITIVE);
         let below = |x: f64| -> f64 {
-            let of = |(weight, held): &(f64, Held)| {
-                0.5 * weight * erfc((held.means[index] - x) / (SQRT_2 * least(held)))
-            };
+            let of =
+                |(weight, held): &(f64, Held)| weight * normal_below((x - held.means[index]) / least(held));
             self.parts.iter().map(of).sum()
         };
         let reach = |sign: f64| {

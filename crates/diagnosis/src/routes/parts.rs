@@ -1,6 +1,5 @@
 //! What every route is given, and what it decides.
 
-use crate::evidence::upper_tail;
 use crate::finding::{Finding, Tried};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
@@ -12,6 +11,7 @@ use crate::search::Search;
 use crate::{Baseline, Hypothesis, Observation};
 use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::Fixture;
+use jointscope_inference::normal_above;
 
 /// The recording as `fitter` sees it, and the fixture as it is given.
 #[derive(Clone, Copy)]
@@ -80,5 +80,5 @@ impl Parts {
 /// χ² per degree of freedom that a fit leaves, and the probability of one as large by chance.
 pub(crate) fn chance(observation: &Observation, fit: &Fit) -> (f64, f64) {
     let chi2_per_dof = fit.chi2_per_dof(observation);
-    (chi2_per_dof, upper_tail(observation.excess(chi2_per_dof)))
+    (chi2_per_dof, normal_above(observation.excess(chi2_per_dof)))
 }

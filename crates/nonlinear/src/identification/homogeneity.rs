@@ -6,11 +6,11 @@
 //! measured by the scatter of hits alike.
 
 use super::records::{Record, struck_channels};
-use crate::distribution::{chi_squared_tail, f_tail};
 use crate::settings::homogeneity::{
     BLOCKS_AROUND, FEWEST_WITHIN, INDEPENDENT_IN_BLOCK, NOISE_DOUBT, SAMPLING_ERROR, WEAK_FORCE, WINDOW,
 };
 use crate::spectra::{Compared, Windowed};
+use jointscope_inference::{chi_squared_above, fisher_above};
 use num_complex::Complex64;
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -77,12 +77,12 @@ impl Sums {
         let between = self.between / self.between_degrees;
         if self.within_degrees < FEWEST_WITHIN {
             let degrees = share * self.between_degrees;
-            return (between, chi_squared_tail(between * degrees / NOISE_DOUBT, degrees));
+            return (between, chi_squared_above(between * degrees / NOISE_DOUBT, degrees));
         }
         // Hits alike may scatter more than their noise says, but not less.
         let within = (self.within / self.within_degrees).max(1.0);
         let ratio = between / within;
-        (ratio, f_tail(ratio, share * self.between_degrees, share * self.within_degrees))
+        (ratio, fisher_above(ratio, share * self.between_degrees, share * self.within_degrees))
     }
 }
 

@@ -7,14 +7,13 @@ use super::naming::{Judged, LevelFinding, TriedForm, named_law};
 use super::pooled::noisy;
 use super::problem::{Change, Level, Problem};
 use super::resonance::{Resonance, resonance};
-use crate::distribution::f_tail;
 use crate::settings::homogeneity::CHANGED;
 use crate::settings::levels::{ABOUT_PEAK, FEWEST_LINES, LEAST_RATIO, SCATTER_DOUBT, WIDTHS};
 use crate::settings::naming::LEAVES_NOTHING;
 use crate::{NonlinearOptions, SteppedError};
 use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::{Fixture, QuantityKey, QuantityOwner};
-use jointscope_inference::each_used_up;
+use jointscope_inference::{each_used_up, fisher_above};
 use jointscope_spectra::{Dof, in_sentence};
 use serde::{Serialize, Serializer};
 use std::f64::consts::TAU;
@@ -280,7 +279,7 @@ fn changed(problem: &Problem, linear: &Fitted) -> (f64, f64) {
     let more = 2.0 * (count - 1) as f64;
     let left = problem.count() as f64 - 2.0 * count as f64 - 1.0;
     let ratio = ((common - own) / more) / (own / left) / SCATTER_DOUBT;
-    (f_tail(ratio, more, left), ratio)
+    (fisher_above(ratio, more, left), ratio)
 }
 
 /// The fixture with the base stiffness and loss of a change in its joint's file entries; and what has no
