@@ -267,7 +267,7 @@ impl FiledJoint {
     }
 }
 
-fn matrices(six: &[f64; 6]) -> (Matrix, Matrix) {
+pub(crate) fn matrices(six: &[f64; 6]) -> (Matrix, Matrix) {
     let matrix = |first: usize| [[six[first], six[first + 1]], [six[first + 1], six[first + 2]]];
     (matrix(0), matrix(3))
 }

@@ -2,7 +2,7 @@
 
 use crate::by_law::{ByLaw, posteriors};
 use crate::choices::choices;
-use crate::tests_of_equality::of_two;
+use crate::equality::of_two;
 use crate::{
     Caution, Compared, Decomposed, ELEMENTS, Equality, FiledEstimate, FiledJoint, Kind, LawOfAll, LawsDiffer,
     ModelRatios, Number, Pair, Ranking, Specimens, Together,
@@ -332,7 +332,7 @@ fn pair(
     independent: bool,
 ) -> Pair {
     let of_two = tested.and_then(|two| of_two(&two.map(Decomposed::clone), numbers, independent));
-    let pair = Pair::of(by_law, numbers, places, names, of_two.as_ref());
+    let pair = Pair::of(by_law, numbers, places, names, of_two.as_deref());
     let untested = tested.filter(|_| pair.equality.is_none());
     Pair { laws_differ: untested.and_then(|[a, b]| LawsDiffer::of(a, b)), ..pair }
 }

@@ -28,6 +28,7 @@
 //! assert!(ranking.adjacent[1] > 0.999);
 //! ```
 
+mod about_centre;
 mod agreement;
 mod at_law;
 mod at_once;
@@ -39,6 +40,7 @@ mod common_law;
 mod compared;
 mod comparison;
 mod decomposed;
+mod equality;
 mod filed;
 mod filed_likelihood;
 mod laws_in_common;
@@ -51,7 +53,6 @@ mod ranking;
 mod source;
 mod specimens;
 mod stiffness_file;
-mod tests_of_equality;
 mod together;
 
 pub use at_law::LawOfAll;
@@ -61,11 +62,12 @@ pub use caution::Caution;
 pub use compared::Compared;
 pub use comparison::{Comparison, ComparisonError, ComparisonOptions, ElementRanking};
 pub use decomposed::{Average, Decomposed, DecomposedError, End, Ends, FiledEstimate, Judged, Line};
+pub use equality::Equality;
 pub use filed::{FiledJoint, FiledTests, StatedQuantity};
 pub use filed_likelihood::FiledLikelihood;
 pub use models::{ModelIs, ModelRatio, ModelRatios};
 pub use number::{ELEMENTS, Kind, Number};
-pub use pair::{Equality, FigureInterval, LawsDiffer, Pair, PairedNumber, Ratio};
+pub use pair::{FigureInterval, LawsDiffer, Pair, PairedNumber, Ratio};
 pub use ranking::Ranking;
 pub use source::Source;
 pub use specimens::{Scatter, Specimens};

@@ -97,3 +97,24 @@ pub(crate) fn of_one_slope(joints: &[Decomposed]) -> Vec<Decomposed> {
     };
     joints.iter().zip(&fits).map(levelled).collect()
 }
+
+/// What the valley of two joints that are tested for being the same bends by between their two tests: half of
+/// what their slopes differ by, times what their quantities do, by place among the six; nothing of joints that
+/// are not of the same numbers and quantities.
+pub(crate) fn bend_between(two: &[Decomposed]) -> Vec<(usize, f64)> {
+    let of = |joint: &Decomposed| {
+        let fit = joint.fitted.clone().filter(|_| joint.at_once.is_none())?;
+        Some((Valley::of(&fit)?, fit))
+    };
+    let [Some((one, fit)), Some((other, with))] = [0, 1].map(|joint| two.get(joint).and_then(of)) else {
+        return Vec::new();
+    };
+    let Some((slots, _)) = fit.likelihood().filter(|_| is_alike(&fit, &with)) else { return Vec::new() };
+    let m = one.numbers;
+    let by = |i: usize| {
+        let quantities = one.slope.iter().zip(&other.slope).enumerate();
+        let apart = |p: usize| one.likelihood.at[m + p] - other.likelihood.at[m + p];
+        quantities.map(|(p, (own, others))| 0.5 * (own[i] - others[i]) * apart(p)).sum()
+    };
+    slots.into_iter().enumerate().map(|(i, slot)| (slot, by(i))).collect()
+}

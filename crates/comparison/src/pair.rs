@@ -1,10 +1,11 @@
 //! Two joints: by how much they differ, in what ratio, and whether they are the same.
 
 use crate::by_law::ByLaw;
+use crate::equality::TestedTwo;
 use crate::laws_in_common::LawsInCommon;
-use crate::normal::{larger_magnitude, mahalanobis, mixed_interval, mixed_ratio_interval};
-use crate::{Decomposed, Kind, Number, Together};
-use jointscope_inference::{SIGNIFICANT, Z95, chi_squared_above, interval95};
+use crate::normal::{larger_magnitude, mixed_interval, mixed_ratio_interval};
+use crate::{Decomposed, Equality, Kind, Number, Together};
+use jointscope_inference::{Z95, interval95};
 use serde::Serialize;
 
 /// A value with its standard deviation and 95 % interval, SI.
@@ -61,75 +62,6 @@ impl PairedNumber {
         low > 0.0 || high < 0.0
     }
 }
-
-/// A test of equal numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Equality {
-    /// χ² of the differences.
-    pub chi2: f64,
-    /// Degrees of freedom: numbers that have a deviation and are not fixed by others.
-    pub degrees: usize,
-    /// Probability of differences as large or larger, if the joints are the same.
-    pub p_value: f64,
-}
-
-impl Equality {
-    /// Whether the joints count as different.
-    pub fn is_refuted(&self) -> bool {
-        self.p_value < SIGNIFICANT
-    }
-
-    fn of(differences: &[f64], covariance: &[f64]) -> Option<Self> {
-        let (chi2, degrees) = mahalanobis(differences, covariance)?;
-        Some(Equality { chi2, degrees, p_value: chi_squared_above(chi2, degrees as f64) })
-    }
-
-    /// Of several joints, by every two of them.
-    pub(crate) fn of_pairs(pairs: &[Pair]) -> Option<Self> {
-        let each: Vec<Equality> = pairs.iter().map(|pair| pair.equality).collect::<Option<_>>()?;
-        let most =
-            each.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value).then(b.chi2.total_cmp(&a.chi2)))?;
-        Some(Equality { p_value: (most.p_value * each.len() as f64).min(1.0), ..*most })
-    }
-
-    /// The same by each of several laws: χ² is of the first, the p-value the mean of all, each as often as it
-    /// is probable.
-    pub(crate) fn by_law(by: &ByLaw, numbers: &[Number]) -> Option<Self> {
-        let each = by.iter().map(|(weight, of)| Some((*weight, Equality::of_all(of, &[0, 1], numbers)?)));
-        let each: Vec<Option<(f64, Equality)>> = each.collect();
-        let first = each.first().copied().flatten()?.1;
-        let (sum, weight) = each
-            .iter()
-            .flatten()
-            .fold((0.0, 0.0), |(sum, all), (weight, of)| (sum + weight * of.p_value, all + weight));
-        Some(Equality { p_value: if each.len() == 1 { first.p_value } else { sum / weight }, ..first })
-    }
-
-    /// Of all numbers of these joints at once; nothing where it is not known how their errors go together.
-    fn of_all(together: &Together, joints: &[usize], numbers: &[Number]) -> Option<Self> {
-        if !together.has_covariances {
-            return None;
-        }
-        let (first, others) = joints.split_first()?;
-        let entries: Vec<(usize, usize)> =
-            others.iter().flat_map(|&joint| (0..numbers.len()).map(move |n| (joint, n))).collect();
-        let difference = |&(joint, n): &(usize, usize)| together.value(joint, n) - together.value(*first, n);
-        let covariance = |a: (usize, usize), b: (usize, usize)| {
-            let of = |a, b| together.covariance(a, b);
-            let (a0, b0) = ((*first, a.1), (*first, b.1));
-            // What is left of nearly equal terms is rounding where it is nothing beside them.
-            let left = of(a, b) - of(a, b0) - of(a0, b) + of(a0, b0);
-            let size = (of(a, a) + of(a0, a0)).sqrt() * (of(b, b) + of(b0, b0)).sqrt();
-            if left.abs() <= ROUNDING * size { 0.0 } else { left }
-        };
-        let matrix: Vec<f64> =
-            entries.iter().flat_map(|&a| entries.iter().map(move |&b| covariance(a, b))).collect();
-        Equality::of(&entries.iter().map(difference).collect::<Vec<_>>(), &matrix)
-    }
-}
-
-/// Share of a difference's terms below which it is rounding.
-const ROUNDING: f64 = 1e-13;
 
 /// Two joints, number by number.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -205,7 +137,7 @@ impl Pair {
         numbers: &[Number],
         (first, second): (usize, usize),
         names: [&str; 2],
-        tested: Option<&ByLaw>,
+        tested: Option<&[TestedTwo]>,
     ) -> Self {
         let part = |n: usize, (weight, together): &(f64, Together)| {
             let of = |a, b| together.covariance((a, n), (b, n));
@@ -225,10 +157,10 @@ impl Pair {
             first: names[0].to_owned(),
             second: names[1].to_owned(),
             numbers: all,
-            equality: tested.and_then(|by| Equality::by_law(by, numbers)),
+            equality: tested.and_then(Equality::by_law),
             undetermined: tested
                 .and_then(|by| by.first())
-                .map_or_else(Vec::new, |(_, by)| undetermined_by_both(by, numbers)),
+                .map_or_else(Vec::new, |by| undetermined_by_both(&by.together, numbers)),
             laws_differ: None,
         }
     }

@@ -271,6 +271,11 @@ impl Together {
         Some(())
     }
 
+    /// Numbers of each joint.
+    pub(crate) fn numbers(&self) -> usize {
+        self.count
+    }
+
     /// A joint's number.
     pub fn value(&self, joint: usize, number: usize) -> f64 {
         self.mean[joint * self.count + number]

@@ -40,6 +40,10 @@ pub(crate) fn equality(equality: &Equality, names: [&str; 2]) -> String {
     let degrees = equality.degrees;
     match equality.is_refuted() {
         true => format!("{first} and {second} are not the same joint: all {degrees} numbers equal has {p}"),
+        false if equality.is_blunt() => format!(
+            "nothing tells {first} and {second} apart: all {degrees} numbers equal has {p}, but the tests end so far apart in what is not known of the blocks that small differences \
+             are not seen; state the blocks more narrowly to see them"
+        ),
         false => format!("nothing tells {first} and {second} apart: all {degrees} numbers equal has {p}"),
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::joint_fit::{Case, EIGHT, fixture, from_uniform, recorded, rms, six};
 use jointscope::comparison::{Comparison, ComparisonOptions, Decomposed};
-use jointscope::fixture::Fixture;
+use jointscope::fixture::{Fixture, Spread};
 use jointscope::linalg::Cholesky;
 use jointscope::{Analysis, AnalysisOptions, stiffness_file};
 use jointscope_rig::{drawn_within_tolerance, generator};
@@ -48,14 +48,18 @@ struct Runs {
 
 /// Pairs whose second joint is `times` as stiff, each on blocks of its own draw.
 fn runs(times: f64, count: u64, seed: u64, laws: bool) -> Runs {
-    let analyst = fixture(&Case::ordinary(), "");
+    runs_on(&fixture(&Case::ordinary(), ""), times, count, seed, laws)
+}
+
+/// The same of this fixture.
+fn runs_on(analyst: &Fixture, times: f64, count: u64, seed: u64, laws: bool) -> Runs {
     let mut runs = Runs::default();
     for run in 0..count {
         let seed = seed * 100_000 + run;
         let mut noise = Noise::new(seed);
-        let truth = drawn_within_tolerance(&analyst, &mut generator(seed)).unwrap();
+        let truth = drawn_within_tolerance(analyst, &mut generator(seed)).unwrap();
         let other = stiffened(&truth, times);
-        let mut joint = |name: &str, truth: &Fixture| decomposed(name, &analyst, truth, &mut noise, laws);
+        let mut joint = |name: &str, truth: &Fixture| decomposed(name, analyst, truth, &mut noise, laws);
         let joints = vec![joint("a", &truth), joint("b", &other)];
         let apart = ComparisonOptions { independent: true, ..Default::default() };
         let apart = Comparison::with(joints.clone(), &apart).unwrap();
@@ -192,6 +196,33 @@ fn a_joint_five_per_cent_stiffer_on_the_same_blocks_is_known_many_times_better_t
     // Both the ratio and the unequal numbers are seen every time.
     assert!(runs.second_is_larger.iter().all(|run| run[0] > 0.999));
     assert!(runs.equality.iter().all(|p| *p < 1e-6));
+}
+
+/// The fixture with blocks that were measured by a ruler.
+fn by_ruler(fixture: &Fixture) -> Fixture {
+    let mut other = fixture.clone();
+    for entry in other.quantities_mut() {
+        let times = match entry.path.rsplit('/').next() {
+            Some("mass") => 5.0,
+            Some("inertia") => 6.0,
+            Some("x_cg") => 10.0,
+            Some("x") => 5.0,
+            _ => 1.0,
+        };
+        if let Spread::Stated(std) = &mut entry.quantity.spread {
+            *std *= times;
+        }
+    }
+    other
+}
+
+#[test]
+fn one_joint_tested_twice_on_blocks_that_are_hardly_known_is_the_same_and_a_stiffer_one_is_not() {
+    let analyst = by_ruler(&fixture(&Case::ordinary(), ""));
+    let same = runs_on(&analyst, 1.0, 10, 13, false);
+    assert!(same.equality.iter().all(|p| *p > 0.01), "{:?}", same.equality);
+    let stiffer = runs_on(&analyst, 1.01, 3, 17, false);
+    assert!(stiffer.equality.iter().all(|p| *p < 1e-6), "{:?}", stiffer.equality);
 }
 
 #[test]
