@@ -95,8 +95,6 @@ pub(crate) mod starts {
     pub(crate) const ASTRAY: f64 = 0.5;
     /// Mean square departure of the quantities, in standard deviations, above which another start is tried.
     pub(crate) const PLAUSIBLE_DEPARTURE: f64 = 4.0;
-    /// Stiffness of the starts as shares of the fixture's.
-    pub(crate) const STIFFNESS_SHARES: [f64; 3] = [1.0, 0.5, 2.0];
 }
 
 /// The fit to all FRFs.
@@ -192,6 +190,16 @@ pub(crate) mod laws {
 pub(crate) mod several {
     use jointscope_inference::Limit;
 
+    /// Shares of the fixture's stiffness at which each joint is tried before a fit begins.
+    pub(crate) const GRID: [f64; 5] = [0.4, 0.63, 1.0, 1.6, 2.5];
+    /// Places of the grid that are all tried; of more joints one is moved after the other.
+    pub(crate) const MOST_ON_GRID: usize = 125;
+    /// How often each joint is moved.
+    pub(crate) const SWEEPS: usize = 4;
+    /// Share of the signal that counts as noise on the grid.
+    pub(crate) const SCAN: f64 = 0.3;
+    /// Starts of the grid from which a fit is tried.
+    pub(crate) const STARTS: usize = 3;
     /// Laws of a round that are gone on with, the nearest to the FRFs, however far the others.
     pub(crate) const NEAREST: usize = 2;
     /// When the fit of a law that competes with others is given up, the nearest being within reach.

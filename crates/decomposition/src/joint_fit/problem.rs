@@ -229,6 +229,15 @@ impl<'a> Problem<'a> {
         Some(Point { coordinates, uncoupled, predicted, objective })
     }
 
+    /// The objective where the joints alone are others, by coordinates of their laws.
+    pub(super) fn with_joints(&self, at: &Point, own: &[f64]) -> Option<f64> {
+        let recorded = self.test.setup.recorded;
+        let mut coordinates = at.coordinates.clone();
+        coordinates[..own.len()].copy_from_slice(own);
+        let predicted = at.uncoupled.coupled(recorded, &self.placed(&coordinates), None)?;
+        Some(recorded.objective(&predicted, self.test.weights, (&self.parameters, &coordinates)))
+    }
+
     /// Derivatives by the laws' coordinates.
     fn own_columns(&self, at: &Point) -> Columns {
         let mut columns = vec![vec![Complex64::ZERO; at.predicted.len()]; self.of_laws()];

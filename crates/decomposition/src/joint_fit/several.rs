@@ -12,8 +12,9 @@
 
 mod found;
 mod laws;
+mod starts;
 
-use crate::settings::starts::{DOUBTFUL_FIT, PLAUSIBLE_DEPARTURE, START_LOSS, STIFFNESS_SHARES};
+use crate::settings::starts::{ASTRAY, DOUBTFUL_FIT, PLAUSIBLE_DEPARTURE, START_LOSS};
 pub use found::{FoundJoint, JointsCovariance, JointsFit, SeveralError};
 
 use super::admissible::first_order_asymmetry;
@@ -38,9 +39,9 @@ use jointscope_spectra::FrfSet;
 /// Variances are estimated from coherence and averages where the set has them, from its scatter elsewhere;
 /// those that it carries already are kept.
 ///
-/// It starts from the fixture's own joints; where χ² per degree of freedom stays above 1.3, stages follow in
-/// which 100, 30, 6 and 1 % of the signal count as noise, from the fixture's joints, from half and from twice
-/// their stiffness.
+/// It starts from the fixture's own joints where none of 0.4 to 2.5 times their stiffness, each joint by itself,
+/// is nearer to the FRFs; else, and where χ² per degree of freedom stays above 1.3, stages follow in which 100,
+/// 30, 6 and 1 % of the signal count as noise, from the three nearest.
 ///
 /// # Errors
 /// See [`SeveralError`].
@@ -64,18 +65,23 @@ pub fn fit_joints(
     };
     let laws: Vec<Dynamics> = nominal.iter().zip(&scalar).map(law).collect();
     let quantities = uncertain(fixture, &joints, options.exact);
-    let start = |share: f64| -> Vec<f64> {
-        let own = laws.iter().zip(&nominal);
-        own.flat_map(|(law, k)| coordinates(law, k.scale(share), k.scale(share * START_LOSS))).collect()
+    let start = |shares: &[f64]| -> Vec<f64> {
+        let own = laws.iter().zip(&nominal).zip(shares);
+        own.flat_map(|((law, k), share)| coordinates(law, k.scale(*share), k.scale(share * START_LOSS)))
+            .collect()
     };
+    let as_stated = start(&vec![1.0; joints.len()]);
     let pieces = connected(&with_effects_of(fixture, without(fixture, &joints)));
     let setup = Setup { recorded: &recorded, fixture, joints: &joints, pieces: &pieces };
     let (quantities, unmoved, _) =
-        that_matter(setup, laws.clone(), &[start(1.0)], quantities).ok_or(SeveralError::NoStart)?;
+        that_matter(setup, laws.clone(), &[as_stated], quantities).ok_or(SeveralError::NoStart)?;
     let test = Test { setup, quantities: &quantities, weights: &recorded.weights };
     let viscous = Problem::open(test, laws.clone(), None);
     let mut first = lowest(&viscous, &start).ok_or(SeveralError::NoStart)?;
     first.refresh(&viscous).ok_or(SeveralError::NoStart)?;
+    if first.point.objective > ASTRAY * recorded.size(&recorded.values) {
+        return Err(SeveralError::Astray);
+    }
     let (laws, followed) = match options.laws {
         true => {
             let (laws, followed) = laws::compared(&viscous, &first);
@@ -215,12 +221,15 @@ fn connected(fixture: &Fixture) -> Vec<usize> {
     pieces.iter().map(|piece| numbers.partition_point(|number| number < piece)).collect()
 }
 
-/// The lowest optimum of viscous joints.
-fn lowest(problem: &Problem, start: &dyn Fn(f64) -> Vec<f64>) -> Option<Fitted> {
+/// The lowest optimum of viscous joints: from the fixture's own, if nothing of the grid is nearer, else and
+/// where that does not explain the FRFs, by stages from the nearest of the grid.
+fn lowest(problem: &Problem, start: &(dyn Fn(&[f64]) -> Vec<f64> + Sync)) -> Option<Fitted> {
+    let starts = starts::starts(problem, start);
+    let nearest = starts.first().filter(|shares| shares.iter().all(|share| *share == 1.0));
+    let attempts = nearest.map(|shares| (shares, false)).into_iter();
     let mut best: Option<Fitted> = None;
-    let attempts = std::iter::once((1.0, false)).chain(STIFFNESS_SHARES.map(|share| (share, true)));
-    for (share, from_afar) in attempts {
-        let start = problem.whole(&start(share));
+    for (shares, from_afar) in attempts.chain(starts.iter().map(|shares| (shares, true))) {
+        let start = problem.whole(&start(shares));
         let found = if from_afar { problem.searched(start) } else { problem.fit(start, None) };
         best = best.into_iter().chain(found).reduce(lower);
         if best.as_ref().is_some_and(|best| is_plausible(problem, &best.point)) {

@@ -95,6 +95,11 @@ pub enum SeveralError {
     /// No start leads anywhere.
     #[error("no start of the fit gives finite FRFs")]
     NoStart,
+    /// What was found leaves half of the FRFs.
+    #[error(
+        "no joints of the fixture come near the FRFs, from 0.4 to 2.5 times as stiff as they are stated; correct the fixture's bodies and points (jointscope check helps), or state joints that are about right"
+    )]
+    Astray,
     /// The FRFs do not determine all numbers.
     #[error(
         "the FRFs leave an element of k or c of joint {} undetermined: measure FRFs across it with two points on each of its bodies, or choose the joints to be found with --joint",
