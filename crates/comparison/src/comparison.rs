@@ -35,7 +35,7 @@ impl ElementRanking {
         self.has_deviations && self.ranking.is_settled()
     }
 
-    /// Whether the whole order may be stated: more likely right than wrong, or with nothing that tells how
+    /// Whether the whole order may be stated: twice as likely right as wrong, or with nothing that tells how
     /// sure it is.
     pub fn is_stated(&self) -> bool {
         !self.has_deviations || self.ranking.is_stated()

@@ -26,8 +26,9 @@ const DRAWS: usize = 20_000;
 /// Probability from which an order counts as settled.
 const SURE: f64 = 0.95;
 
-/// Probability from which an order is stated: below, it is more likely wrong than right.
-const STATED: f64 = 0.5;
+/// Probability from which an order is stated: twice as likely right as wrong. Of two joints either order is
+/// right half of the time.
+const STATED: f64 = 2.0 / 3.0;
 
 impl Ranking {
     /// Whether the whole order is settled.
@@ -35,7 +36,7 @@ impl Ranking {
         self.probability >= SURE
     }
 
-    /// Whether the whole order is at least as likely right as wrong.
+    /// Whether the whole order is at least twice as likely right as wrong.
     pub fn is_stated(&self) -> bool {
         self.probability >= STATED
     }
@@ -137,6 +138,8 @@ mod tests {
         assert_eq!(ranking.order, [1, 0]);
         assert!((ranking.probability - 0.7602).abs() < 0.012, "{}", ranking.probability);
         assert!((ranking.ranks[0][1] - ranking.probability).abs() < 1e-12);
+        // Either order of two that hardly differ is right about half of the time.
+        assert!(ranking.is_stated() && !Ranking::of(&[(10.1, 1.0), (10.0, 1.0)]).is_stated());
     }
 
     #[test]
