@@ -202,7 +202,7 @@ impl Comparison {
             Specimens::of(kind, &together, &numbers, &named)
         });
         let specimens = specimens.collect();
-        let equality = Equality::of_pairs(&pairs);
+        let equality = Equality::of_pairs(pairs.iter().map(|pair| pair.equality));
         Ok(Comparison {
             models: ModelRatios::all(&joints, &by_law, &numbers),
             relation,

@@ -18,7 +18,7 @@ use crate::at_law::with_free_damping;
 use crate::choices::{Choice, choices};
 use crate::normal::mahalanobis;
 use crate::one_slope::{bend_between, of_one_slope};
-use crate::{Decomposed, LawOfAll, Number, Pair, Together};
+use crate::{Decomposed, LawOfAll, Number, Together};
 use jointscope_inference::{SIGNIFICANT, chi_squared_above};
 use serde::Serialize;
 
@@ -55,9 +55,9 @@ impl Equality {
         HIGHER_ORDERS * self.bend > HIDDEN
     }
 
-    /// Of several joints, by every two of them.
-    pub(crate) fn of_pairs(pairs: &[Pair]) -> Option<Self> {
-        let each: Vec<Equality> = pairs.iter().map(|pair| pair.equality).collect::<Option<_>>()?;
+    /// Of several joints, by the tests of every two of them.
+    pub(crate) fn of_pairs(pairs: impl Iterator<Item = Option<Equality>>) -> Option<Self> {
+        let each: Vec<Equality> = pairs.collect::<Option<_>>()?;
         let most =
             each.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value).then(b.chi2.total_cmp(&a.chi2)))?;
         Some(Equality { p_value: (most.p_value * each.len() as f64).min(1.0), ..*most })

@@ -2,10 +2,15 @@
 """Joints of two blocks, recorded by NumPy, and how often their intervals hold.
 
     python3 docs/development/checks/joints_with_numpy.py PROGRAM [--runs 20] [--seed 1] [--only default quiet …]
+    python3 docs/development/checks/joints_with_numpy.py PROGRAM --twice 1 [--runs 20] [--seed 1] [--only default wide]
+    python3 docs/development/checks/joints_with_numpy.py PROGRAM --chain 3 [--runs 12] [--seed 1]
 
 Blocks and points are drawn from their tolerances; each point is struck ten times, H1 and coherence are estimated from the hits. Nothing of the program's mechanics is
 used. A score is (found − true) over the stated deviation; the root of its mean square should be 1. Ends with status 1 where that of k11, k12 or k22 is above 1.5, where a law is
 wrong in more than a quarter of the runs, or where χ² per degree of freedom is above 1.1.
+
+--twice F tests every joint twice on the same blocks, the second time F times as stiff, and has `compare` say whether both are the same: how often p is below 0.05, and the smallest.
+--chain N has all joints of a chain of N blocks found at once, each stated between 0.6 and 1.6 times as stiff as it is: how many scores are beyond 4.
 """
 import argparse
 import json
@@ -109,6 +114,89 @@ def written(path, frfs, random, noise):
             )
 
 
+def asked(program, command, folder):
+    """What the program answers, or its refusal."""
+    answer = subprocess.run([program, *command, "--json"], cwd=folder, capture_output=True, text=True, env={**os.environ, "RAYON_NUM_THREADS": "1"})
+    return (json.loads(answer.stdout), None) if answer.returncode == 0 else (None, answer.stderr.strip())
+
+
+def twice(program, scenario, times, seed, number, folder):
+    """χ² and p of a joint tested twice being the same, and by how many deviations the blocks' valley bends between."""
+    tolerances, noise, law, mass, _ = SCENARIOS[scenario]
+    random = np.random.default_rng([seed, list(SCENARIOS).index(scenario), number])
+    (folder / "fixture.json").write_text(json.dumps(fixture(tolerances)))
+    structure = drawn(tolerances, random)
+    for test, stiffer in (("a", 1.0), ("b", times)):
+        (folder / f"{test}.uff").unlink(missing_ok=True)
+        written(folder / f"{test}.uff", accelerances(structure, lambda s, by=stiffer: by * law(s), mass), random, noise)
+        _, refusal = asked(program, ["decompose", "fixture.json", f"{test}.uff", "-o", test], folder)
+        if refusal:
+            sys.exit(f"{scenario} {number}: {refusal}")
+    answer, refusal = asked(program, ["compare", "a", "b"], folder)
+    if refusal:
+        sys.exit(f"{scenario} {number}: {refusal}")
+    return answer["pairs"][0]["equality"]
+
+
+def chain(program, blocks, seed, number, folder, noise=1e-2):
+    """Scores of k11, k12, k22 of all joints of a chain of so many blocks; nothing where they are refused."""
+    random = np.random.default_rng([seed, blocks, number])
+    bodies, points, joints, x = {}, {}, {}, 0.0
+    for place in range(blocks):
+        body, length, mass = "ABCDEFGH"[place], random.uniform(0.05, 0.1), random.uniform(0.8, 2.2)
+        bodies[body] = {"mass": mass, "inertia": mass * (length**2 + 0.04**2) / 12, "x_cg": x + length / 2 + random.uniform(-4e-3, 4e-3)}
+        near, middle, far = (str(3 * place + k) for k in (1, 2, 3))
+        points |= {near: (body, x), middle: (body, x + length * random.uniform(0.55, 0.75)), far: (body, x + length)}
+        if place:
+            last = str(3 * place)
+            k11, centre = 10 ** random.uniform(5.6, 6.7), (x - points[last][1]) * random.uniform(-0.6, -0.4)
+            about = k11 * (x - points[last][1]) ** 2 / 12 * random.uniform(0.8, 3)
+            joints[f"J{place}"] = (last, near, k11 * np.array([[1, centre], [centre, centre**2]]) + np.diag([0, about]), random.uniform(5e-6, 3e-5))
+        x += length + random.uniform(0.04, 0.08)
+    spreads = lambda of: {key: share * abs(of[key]) for key, share in zip(("mass", "inertia"), DEFAULTS)} | {"x_cg": DEFAULTS[2]}
+    true = {name: {key: value + spreads(of)[key] * random.standard_normal() for key, value in of.items()} for name, of in bodies.items()}
+    places = {name: (body, at + DEFAULTS[3] * random.standard_normal()) for name, (body, at) in points.items()}
+    first = {name: 2 * place for place, name in enumerate(bodies)}
+
+    def row(point, rotation=False):
+        body, at = places[point]
+        row = np.zeros(2 * blocks)
+        row[first[body] + 1] = 1.0 if rotation else at - true[body]["x_cg"]
+        row[first[body]] = 0.0 if rotation else 1.0
+        return row
+
+    s = 2j * np.pi * LINES[:, None, None]
+    stiffness = s**2 * np.diag([true[name][key] for name in true for key in ("mass", "inertia")])
+    for near, far, matrix, loss in joints.values():
+        length = places[far][1] - places[near][1]
+        across = np.array([[-1, -length, 1, 0], [0, -1, 0, 1]]) @ np.array([row(near), row(near, True), row(far), row(far, True)])
+        stiffness = stiffness + across.T @ (matrix * (1 + loss * s)) @ across
+    receptances = np.linalg.inv(stiffness)
+    struck = ["1", *(str(3 * place + 2) for place in range(1, blocks))]
+    felt = [point for point in points if int(point) % 3 != 2]
+    frfs = {(response, reference): s[:, 0, 0] ** 2 * (receptances @ row(reference) @ row(response)) for reference in struck for response in felt}
+    quantity = lambda value, std: {"value": float(value), "std": std}
+    guessed = {}
+    for name, (near, far, matrix, _) in joints.items():
+        guess = matrix * random.uniform(0.6, 1.6)
+        guessed[name] = {"from": near, "to": far, "stiffness": [[quantity(value, "unknown") for value in row] for row in guess]}
+    stated = {
+        "bodies": {name: {key: quantity(value, spreads(of)[key]) for key, value in of.items()} for name, of in bodies.items()},
+        "points": {name: {"body": body, "x": quantity(at, DEFAULTS[3])} for name, (body, at) in points.items()},
+        "joints": guessed,
+    }
+    (folder / "fixture.json").write_text(json.dumps(stated))
+    (folder / "test.uff").unlink(missing_ok=True)
+    written(folder / "test.uff", frfs, random, noise)
+    answer, refusal = asked(program, ["decompose", "fixture.json", "test.uff"], folder)
+    if refusal:
+        print(f"chain of {blocks}, {number}: {refusal}", flush=True)
+        return None
+    deviation = dict(zip(answer["covariance"]["elements"], np.sqrt(np.diag(answer["covariance"]["matrix"]))))
+    each = [(joint["name"], joint.get("joint", joint)["stiffness"]) for joint in answer["joints"]]
+    return [(found[i][j] - joints[name][2][i, j]) / deviation[f"{name}/k{i + 1}{j + 1}"] for name, found in each for i, j in ((0, 0), (0, 1), (1, 1))]
+
+
 def run(program, scenario, seed, number, folder):
     """Scores of the six numbers, the law's name and χ² per degree of freedom."""
     tolerances, noise, law, mass, _ = SCENARIOS[scenario]
@@ -137,8 +225,25 @@ def main():
     parser.add_argument("--runs", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", nargs="*", default=list(SCENARIOS))
+    parser.add_argument("--twice", type=float)
+    parser.add_argument("--chain", type=int)
     given = parser.parse_args()
     is_right = True
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        if given.chain:
+            began = time.time()
+            runs = [chain(given.program, given.chain, given.seed, number, folder) for number in range(given.runs)]
+            scores = np.array([score for run in runs if run for score in run])
+            beyond = sum(run is None or np.max(np.abs(run)) > 4 for run in runs)
+            print(f"chain of {given.chain}: refused or a score beyond 4 in {beyond} of {given.runs}, rms of scores {np.sqrt((scores**2).mean()):.2f}, {(time.time() - began) / given.runs:.1f} s a run")
+            sys.exit(0 if beyond == 0 else 1)
+        if given.twice:
+            for scenario in given.only:
+                tests = [twice(given.program, scenario, given.twice, given.seed, number, folder) for number in range(given.runs)]
+                p = np.array([test["p_value"] for test in tests])
+                print(f"{scenario}, twice, {given.twice} times as stiff: p below 0.05 in {(p < 0.05).sum()} of {given.runs}, smallest {p.min():.2g}, median bend {np.median([test.get('bend', np.nan) for test in tests]):.1f}", flush=True)
+            sys.exit(0)
     for scenario in given.only:
         began = time.time()
         with tempfile.TemporaryDirectory() as folder:
