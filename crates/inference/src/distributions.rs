@@ -2,6 +2,9 @@
 
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
+/// Halvings that find a quantile to rounding.
+const HALVINGS: usize = 200;
+
 /// P(x < `z`) of a standard normal x.
 pub fn normal_below(z: f64) -> f64 {
     Normal::standard().cdf(z)
@@ -21,9 +24,21 @@ pub fn chi_squared_above(x: f64, degrees: f64) -> f64 {
     }
 }
 
-/// The value that χ² of `degrees` degrees of freedom exceeds with probability `above`; 0 without any.
+/// The value that χ² of `degrees` degrees of freedom exceeds with probability `above`, 0 without any degree;
+/// by bisection, for the library's own is no number at 0.975 of one degree.
 pub fn chi_squared_exceeded(above: f64, degrees: f64) -> f64 {
-    ChiSquared::new(degrees).map_or(0.0, |law| law.inverse_cdf(1.0 - above))
+    if degrees <= 0.0 {
+        return 0.0;
+    }
+    let (mut low, mut high) = (0.0, 10.0 + 2.0 * degrees);
+    while chi_squared_above(high, degrees) > above {
+        high *= 2.0;
+    }
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if chi_squared_above(middle, degrees) > above { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
 }
 
 /// P(F > `f`) of Fisher's distribution; 1 without degrees of freedom.
