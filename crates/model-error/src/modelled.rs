@@ -139,7 +139,6 @@ impl ModelledModes {
             leaks.push(coefficients[..outline.inside].to_vec());
             last_term += lowered;
         }
-        last_term *= outline.recorded as f64 / lines.len() as f64;
         let signals = modes.iter().map(|mode| test.gains_and_delays(mode.pole.omega)).collect();
         let signals_at_ends = [recorded.band.0, recorded.band.1].map(|hz| test.gains_and_delays(TAU * hz));
         let window_decay = test.window_decay();

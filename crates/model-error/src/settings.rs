@@ -113,6 +113,10 @@ pub(crate) mod outline {
     pub(crate) const LEAST_LINES: usize = 48;
     /// The same for each pole and residual term, each of which is one unknown.
     pub(crate) const LINES_PER_COLUMN: usize = 4;
+    /// Where lines stand on each mode in the band besides, in half-widths from its middle. Without them a peak
+    /// between two lines left its residue to what surrounds it: of blocks under an exponential window, whose mass
+    /// lines leave something that no residual term is, a quarter of a residue was said to come from that.
+    pub(crate) const HALF_WIDTHS_AT_PEAKS: [f64; 5] = [-10.0, -2.0, 0.0, 2.0, 10.0];
     /// Frequencies at which peaks of a model are looked for, at the least.
     pub(crate) const LEAST_GRID: usize = 240;
     /// The same for each pole of the recording's free fit.
