@@ -164,12 +164,21 @@ fn pair_table<'a>(comparison: &Comparison, pair: &'a Pair) -> Table<&'a PairedNu
     let correlation =
         |number: &&PairedNumber| number.correlation.map_or("–".to_owned(), |value| fixed(value, 4));
     let same = match pair.equality {
-        Some(equality) => format!(
-            "{} (χ² {} of {} degrees of freedom).",
-            says::tested(comparison, pair),
-            significant(equality.chi2, 4),
-            equality.degrees
-        ),
+        Some(equality) => {
+            let bent = match equality.is_blunt() {
+                true => format!(
+                    ", between tests that the blocks bend by {} deviations",
+                    significant(equality.bend, 3)
+                ),
+                false => String::new(),
+            };
+            let tested = says::tested(comparison, pair);
+            format!(
+                "{tested} (χ² {} of {} degrees of freedom{bent}).",
+                significant(equality.chi2, 4),
+                equality.degrees
+            )
+        }
         None => sentence(&says::tested(comparison, pair)),
     };
     let differs = |number: &&PairedNumber| number.differs().then_some(Tone::Attention);
@@ -196,12 +205,9 @@ fn order_section(comparison: &Comparison) -> Section {
     let table = Table::of(&comparison.rankings)
         .words("element", |entry| symbol(entry))
         .words("from the smallest magnitude to the largest", |entry| order_words(comparison, entry))
-        .words("whole order right", |entry| match entry.is_stated() {
-            true => stated(entry, entry.ranking.probability),
-            false => "below 50 %".to_owned(),
-        })
+        .words("whole order right", |entry| stated(entry, entry.ranking.probability))
         .words("each larger than the one before", each)
-        .footnote("≲ : less than 95 % sure. An order less than 50 % sure is not stated. Probabilities by 20 000 draws of all joints at once, errors in common included.");
+        .footnote("≲ : less than 95 % sure. An order that is not at least twice as likely right as wrong is not stated. Probabilities by 20 000 draws of all joints at once, errors in common included.");
     let ranks =
         Table::of(0..comparison.joints.len()).words("joint", |&joint| comparison.joints[joint].name.clone());
     let ranks = comparison.rankings.iter().fold(ranks, |table, entry| {
