@@ -54,7 +54,7 @@ fn joints_are_ranked_with_the_probability_of_the_order() {
 }
 
 #[test]
-fn an_order_that_is_more_likely_wrong_than_right_is_not_stated_but_its_decided_pairs_are() {
+fn an_order_that_is_not_twice_as_likely_right_as_wrong_is_not_stated_but_its_decided_pairs_are() {
     let bench = Bench::new("compare-undecided");
     let d0 = include_str!("../../../../fixtures/paper/D0.json");
     bench.write("d0.json", d0);
@@ -72,7 +72,7 @@ fn an_order_that_is_more_likely_wrong_than_right_is_not_stated_but_its_decided_p
         file["rankings"].as_array().unwrap().iter().filter(|entry| entry["stated"] == false).collect();
     assert!(!open.is_empty(), "{summary}");
     for entry in open {
-        assert!(entry["probability"].as_f64().unwrap() < 0.5, "{entry}");
+        assert!(entry["probability"].as_f64().unwrap() < 2.0 / 3.0, "{entry}");
         let element = entry["element"].as_str().unwrap();
         let line = summary.lines().find(|line| {
             line.starts_with(&format!("{element}: ")) && !line.contains(" is ") // not the line of a ratio
