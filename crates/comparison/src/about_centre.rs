@@ -16,12 +16,12 @@ use jointscope_linalg::dot;
 /// Both joints with their numbers about the elastic centre, in the places of k11, k12, k22, c11, c12, c22;
 /// nothing where not all elements are compared, or K is not positive definite.
 pub(crate) fn about_centre(two: &[Decomposed], numbers: &[Number]) -> Option<Vec<Decomposed>> {
-    let mut slots: Vec<usize> = numbers.iter().map(|number| number.slot()).collect();
-    slots.sort_unstable();
-    slots.dedup();
-    let are_whole = is_whole(&slots);
+    let slots: Vec<usize> = numbers.iter().map(|number| number.slot()).collect();
+    if !is_whole(&slots) {
+        return None;
+    }
     let centred = |joint: &Decomposed| -> Option<Decomposed> {
-        let fit = joint.fitted.as_ref().filter(|_| are_whole && joint.at_once.is_none())?;
+        let fit = joint.fitted.as_ref().filter(|_| joint.at_once.is_none())?;
         Some(Decomposed { fitted: Some(of_fit(fit)?), ..joint.clone() })
     };
     two.iter().map(centred).collect()

@@ -11,7 +11,8 @@
 //! Two tests with wide tolerances end far apart in the valley, and of the differences of numbers that are known
 //! to 10⁻⁵ its third order is then many deviations. So the test is of the numbers about the elastic centre, of
 //! which the valley bends least; and a tenth of what it bends by between the two, its second order, is taken
-//! off before a difference counts. Of joints tested twice the third order was 0.04 to 0.08 of the second.
+//! off before a difference counts. Of 29 joints tested twice, the valley of which bent by 50 deviations and more, √χ² was 0.02 to
+//! 0.08 of that.
 
 use crate::about_centre::about_centre;
 use crate::at_law::with_free_damping;

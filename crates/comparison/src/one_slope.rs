@@ -70,15 +70,17 @@ fn is_alike(a: &FiledJoint, b: &FiledJoint) -> bool {
     elements(a).is_some() && elements(a) == elements(b) && a.quantities == b.quantities
 }
 
+/// The fit of a joint that no other was found with, and its valley.
+fn with_valley(joint: &Decomposed) -> Option<(&FiledJoint, Valley)> {
+    let fit = joint.fitted.as_ref().filter(|_| joint.at_once.is_none())?;
+    Some((fit, Valley::of(fit)?))
+}
+
 /// The joints with the mean slope of those that are of the same numbers and quantities; the others stay, and
 /// so do joints that one fit found at once.
 pub(crate) fn of_one_slope(joints: &[Decomposed]) -> Vec<Decomposed> {
-    let fit = |joint: &Decomposed| joint.fitted.clone().filter(|_| joint.at_once.is_none());
-    let fits: Vec<Option<(FiledJoint, Valley)>> = joints
-        .iter()
-        .map(|joint| fit(joint).and_then(|fit| Valley::of(&fit).map(|valley| (fit, valley))))
-        .collect();
-    let levelled = |(joint, own): (&Decomposed, &Option<(FiledJoint, Valley)>)| {
+    let fits: Vec<Option<(&FiledJoint, Valley)>> = joints.iter().map(with_valley).collect();
+    let levelled = |(joint, own): (&Decomposed, &Option<(&FiledJoint, Valley)>)| {
         let Some((fit, valley)) = own else { return joint.clone() };
         let alike: Vec<&Valley> = fits
             .iter()
@@ -93,7 +95,7 @@ pub(crate) fn of_one_slope(joints: &[Decomposed]) -> Vec<Decomposed> {
             (0..valley.slope.len()).map(|p| (0..valley.numbers).map(|i| mean(p, i)).collect()).collect();
         let elements = fit.likelihood.as_ref().map_or_else(Vec::new, |filed| filed.elements.clone());
         let likelihood = Some(FiledLikelihood::of(elements, &valley.with(&slope)));
-        Decomposed { fitted: Some(FiledJoint { likelihood, ..fit.clone() }), ..joint.clone() }
+        Decomposed { fitted: Some(FiledJoint { likelihood, ..(*fit).clone() }), ..joint.clone() }
     };
     joints.iter().zip(&fits).map(levelled).collect()
 }
@@ -102,14 +104,10 @@ pub(crate) fn of_one_slope(joints: &[Decomposed]) -> Vec<Decomposed> {
 /// what their slopes differ by, times what their quantities do, by place among the six; nothing of joints that
 /// are not of the same numbers and quantities.
 pub(crate) fn bend_between(two: &[Decomposed]) -> Vec<(usize, f64)> {
-    let of = |joint: &Decomposed| {
-        let fit = joint.fitted.clone().filter(|_| joint.at_once.is_none())?;
-        Some((Valley::of(&fit)?, fit))
-    };
-    let [Some((one, fit)), Some((other, with))] = [0, 1].map(|joint| two.get(joint).and_then(of)) else {
+    let [Some((fit, one)), Some((with, other))] = &two.iter().map(with_valley).collect::<Vec<_>>()[..] else {
         return Vec::new();
     };
-    let Some((slots, _)) = fit.likelihood().filter(|_| is_alike(&fit, &with)) else { return Vec::new() };
+    let Some((slots, _)) = fit.likelihood().filter(|_| is_alike(fit, with)) else { return Vec::new() };
     let m = one.numbers;
     let by = |i: usize| {
         let quantities = one.slope.iter().zip(&other.slope).enumerate();

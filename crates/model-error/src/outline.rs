@@ -154,6 +154,6 @@ mod tests {
         let chosen = [0, 3, 4, 10, 19];
         let all: Vec<Range<usize>> = nearest(&chosen, 20).collect();
         assert_eq!(all, [0..2, 2..4, 4..7, 7..15, 15..20]);
-        assert_eq!(nearest(&[0], 1).collect::<Vec<_>>(), [0..1]);
+        assert_eq!(nearest(&[0], 1).next(), Some(0..1));
     }
 }

@@ -221,21 +221,22 @@ impl<'a> Problem<'a> {
 
     /// `None` where nothing finite is predicted.
     pub(super) fn point(&self, coordinates: Vec<f64>, before: Option<&Uncoupled>) -> Option<Point> {
-        let recorded = self.test.setup.recorded;
         let uncoupled = Arc::new(self.uncoupled(&coordinates, before)?);
+        self.coupled(uncoupled, coordinates)
+    }
+
+    /// The point where the joints alone are others than `at`, by coordinates of their laws.
+    pub(super) fn with_joints(&self, at: &Point, own: &[f64]) -> Option<Point> {
+        let coordinates = [own, &at.coordinates[own.len()..]].concat();
+        self.coupled(Arc::clone(&at.uncoupled), coordinates)
+    }
+
+    fn coupled(&self, uncoupled: Arc<Uncoupled>, coordinates: Vec<f64>) -> Option<Point> {
+        let recorded = self.test.setup.recorded;
         let predicted = uncoupled.coupled(recorded, &self.placed(&coordinates), None)?;
         let known = (self.parameters.as_slice(), coordinates.as_slice());
         let objective = recorded.objective(&predicted, self.test.weights, known);
         Some(Point { coordinates, uncoupled, predicted, objective })
-    }
-
-    /// The objective where the joints alone are others, by coordinates of their laws.
-    pub(super) fn with_joints(&self, at: &Point, own: &[f64]) -> Option<f64> {
-        let recorded = self.test.setup.recorded;
-        let mut coordinates = at.coordinates.clone();
-        coordinates[..own.len()].copy_from_slice(own);
-        let predicted = at.uncoupled.coupled(recorded, &self.placed(&coordinates), None)?;
-        Some(recorded.objective(&predicted, self.test.weights, (&self.parameters, &coordinates)))
     }
 
     /// Derivatives by the laws' coordinates.

@@ -245,6 +245,7 @@ fn joints_that_are_much_softer_or_stiffer_than_the_fixture_says_each_by_its_own_
                 fit.elements[e]
             );
         }
+        assert!(fit.joints.iter().all(|joint| joint.is_in_a_loop == std::ptr::eq(fixture, &ring)));
     }
 }
 

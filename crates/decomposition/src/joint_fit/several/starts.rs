@@ -19,7 +19,9 @@ pub(super) fn starts(problem: &Problem, start: &(dyn Fn(&[f64]) -> Vec<f64> + Sy
     let Some(as_stated) = problem.point(problem.whole(&start(&vec![1.0; joints])), None) else {
         return vec![vec![1.0; joints]];
     };
-    let left = |shares: &Vec<f64>| problem.with_joints(&as_stated, &start(shares)).unwrap_or(f64::INFINITY);
+    let left = |shares: &Vec<f64>| {
+        problem.with_joints(&as_stated, &start(shares)).map_or(f64::INFINITY, |at| at.objective)
+    };
     let tried: Vec<Vec<f64>> = match GRID.len().checked_pow(joints as u32) {
         Some(count) if count <= MOST_ON_GRID => (0..count)
             .map(|place| {
