@@ -1,21 +1,13 @@
-//! What the bodies of a fixture are: mass, inertia, extent.
+//! What the bodies of a fixture are: inertia, extent.
 
 use jointscope_fixture::{BodyKind, Fixture};
-
-/// Mass of a body without what is stated to sit on it, kg.
-pub(crate) fn mass_of(fixture: &Fixture, body: usize) -> f64 {
-    match &fixture.bodies()[body].kind {
-        BodyKind::Rigid(rigid) => rigid.mass.value,
-        BodyKind::Beam(beam) => beam.mass_per_length.value * (beam.to.value - beam.from.value),
-    }
-}
 
 /// Moment of inertia of a body about its middle, kg·m²; zero of one that does not rotate.
 pub(crate) fn inertia_of(fixture: &Fixture, body: usize) -> f64 {
     match &fixture.bodies()[body].kind {
         BodyKind::Rigid(rigid) => rigid.inertia.filter(|_| rigid.rotates).map_or(0.0, |q| q.value),
         BodyKind::Beam(beam) => {
-            let length = beam.to.value - beam.from.value;
+            let length = beam.length();
             beam.mass_per_length.value * length.powi(3) / 12.0
         }
     }

@@ -1,6 +1,6 @@
 //! Every effect at every legal place of a fixture, with starts from which a fit may set out.
 
-use crate::bodies::{extent, inertia_of, mass_of, radius_of_gyration, turns};
+use crate::bodies::{extent, inertia_of, radius_of_gyration, turns};
 use crate::candidate::{Candidate, candidate};
 use crate::departures::departed;
 use crate::settings::effects::quantities::{CHANGES_OF_SUPPORTS, DEPARTURES};
@@ -390,7 +390,7 @@ impl Surroundings<'_> {
         let omega = TAU * hz[hz.len() - 1];
         let bending = beam.youngs_modulus.value * beam.second_moment.value;
         let wave_number = (omega * omega * beam.mass_per_length.value / bending).sqrt().sqrt();
-        let waves = wave_number * (beam.to.value - beam.from.value) / std::f64::consts::PI;
+        let waves = wave_number * beam.length() / std::f64::consts::PI;
         Some(waves.clamp(FEWEST_HALF_WAVES, MOST_HALF_WAVES))
     }
 
@@ -406,14 +406,14 @@ impl Surroundings<'_> {
     fn beam(&self) -> Option<(f64, f64)> {
         match &self.fixture.bodies()[self.body?].kind {
             BodyKind::Beam(beam) => {
-                Some((beam.youngs_modulus.value * beam.second_moment.value, beam.to.value - beam.from.value))
+                Some((beam.youngs_modulus.value * beam.second_moment.value, beam.length()))
             }
             BodyKind::Rigid(_) => None,
         }
     }
 
     fn measure(&self, measure: Measure) -> Option<f64> {
-        let mass = |body: usize| mass_of(self.fixture, body);
+        let mass = |body: usize| self.fixture.bodies()[body].kind.mass();
         let point = |point: usize| &self.fixture.points()[point];
         let length = self.joint.map(|joint| self.fixture.joint_length(joint));
         let stiffness = self.joint.zip(length).map(|(joint, length)| nominal_stiffness(&joint.law, length));

@@ -1,7 +1,7 @@
 //! How the parameters of an effect move in a fit: by themselves or by their logarithms, and between which
 //! bounds.
 
-use crate::bodies::{extent, mass_of, radius_of_gyration, turns};
+use crate::bodies::{extent, radius_of_gyration, turns};
 use crate::settings::effects::bounds::{
     ABSCISSA_UNIT, ADDED_MASSES, BEYOND_BAR, FARTHEST_ACROSS, MISSING_LENGTH, MISSING_OF_BEAM,
 };
@@ -95,7 +95,7 @@ pub(crate) fn parameters_of(fixture: &Fixture, effect: &Effect, wrong: Parameter
             let start = quantity.value.max(f64::MIN_POSITIVE).ln();
             // What hangs on a body is lighter than the body.
             let most = match (parameter.possible, body) {
-                (Possible::MassOfBody, Some(body)) => mass_of(fixture, body).ln(),
+                (Possible::MassOfBody, Some(body)) => fixture.bodies()[body].kind.mass().ln(),
                 _ => f64::INFINITY,
             };
             logarithm(start - reach, (start + reach).min(most.max(start)))
@@ -118,7 +118,7 @@ pub(crate) fn parameters_of(fixture: &Fixture, effect: &Effect, wrong: Parameter
 /// The most that a body may lack at one place, kg: a block all of it, a beam a hole and the heaviest of the
 /// masses that sit on it.
 fn most_missing(fixture: &Fixture, body: usize) -> f64 {
-    let mass = mass_of(fixture, body);
+    let mass = fixture.bodies()[body].kind.mass();
     match &fixture.bodies()[body].kind {
         BodyKind::Rigid(_) => mass,
         BodyKind::Beam(_) => {
@@ -133,7 +133,7 @@ fn possible(possible: Possible, fixture: &Fixture, place: &Place) -> (f64, f64) 
     let any = (f64::NEG_INFINITY, f64::INFINITY);
     match (possible, place) {
         (Possible::MassOfBody, Place::Body(name)) => {
-            let masses = || (0..fixture.bodies().len()).map(|body| mass_of(fixture, body));
+            let masses = || (0..fixture.bodies().len()).map(|body| fixture.bodies()[body].kind.mass());
             let own = fixture.bodies().iter().position(|body| body.name == *name);
             let own = own.map_or(0.0, |body| most_missing(fixture, body));
             (-own, ADDED_MASSES * masses().sum::<f64>())

@@ -346,7 +346,7 @@ fn free_beam(fixture: &Fixture, places: &[Coordinates]) -> Option<(UniformBeam, 
     if !is_one_free_body(fixture) {
         return None;
     }
-    let length = beam.to.value - beam.from.value;
+    let length = beam.length();
     let bending_stiffness = beam.youngs_modulus.value * beam.second_moment.value;
     let mass_per_length = beam.mass_per_length.value;
     let unit_mesh = match is_bare(fixture) {

@@ -8,7 +8,7 @@ use crate::settings::candidates::{
     MASS_PLACES, MOST_POINTS, NARROWER, PENDULUM, SCALES,
 };
 use jointscope_diagnosis::Hypothesis;
-use jointscope_fixture::{BodyKind, Fixture, QuantityKey};
+use jointscope_fixture::{Fixture, QuantityKey};
 use jointscope_spectra::{Channel, Dof, FrfPair};
 
 /// The points between which FRFs are considered: those that are named, or all of a small structure; of many
@@ -120,7 +120,7 @@ pub(crate) fn changes(fixture: &Fixture, points: &[String]) -> Vec<Measure> {
     }
     let of = |(body, x): (usize, f64)| {
         let name = fixture.bodies()[body].name.clone();
-        let mass = one_two_five(ADDED_MASS * mass_of(fixture, body));
+        let mass = one_two_five(ADDED_MASS * fixture.bodies()[body].kind.mass());
         Measure::AddedMass {
             mass,
             mass_std: ADDED_MASS_DEVIATION * mass,
@@ -154,13 +154,6 @@ pub(crate) fn quantities(hypothesis: &Hypothesis) -> Vec<Measure> {
         })
     };
     hypothesis.tolerances().iter().filter_map(|tolerance| of(&tolerance.quantity)).collect()
-}
-
-fn mass_of(fixture: &Fixture, body: usize) -> f64 {
-    match &fixture.bodies()[body].kind {
-        BodyKind::Rigid(rigid) => rigid.mass.value,
-        BodyKind::Beam(beam) => beam.mass_per_length.value * (beam.to.value - beam.from.value),
-    }
 }
 
 /// The nearest of 1, 2 and 5 times a power of ten.

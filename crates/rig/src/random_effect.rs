@@ -198,7 +198,7 @@ impl Scene<'_> {
         }
         for body in self.fixture.bodies() {
             if let BodyKind::Beam(beam) = &body.kind {
-                let length = beam.to.value - beam.from.value;
+                let length = beam.length();
                 let bending = beam.youngs_modulus.value * beam.second_moment.value;
                 let euler = std::f64::consts::PI.powi(2) * bending / (length * length);
                 // A radius of gyration of a thirtieth of the length: a stocky bar.

@@ -54,7 +54,7 @@ fn judged(fixture: &Fixture) -> impl Iterator<Item = Result<(), Implausible>> {
         }
         BodyKind::Beam(beam) => {
             let place = format!("bodies/{}/beam", body.name);
-            let length = beam.to.value - beam.from.value;
+            let length = beam.length();
             section(&place, length, beam.youngs_modulus.value, beam.second_moment.value)
                 .and_then(|()| density(&place, beam.mass_per_length.value, beam.second_moment.value))
         }

@@ -9,7 +9,6 @@ use crate::settings::laws::{
     CERTAIN, FEW_STEPS, HOPELESS, KEPT_PROBABILITY, MASS_GAIN, MOST_STEPS, NEAR_LOG_EVIDENCE,
 };
 use crate::settings::priors::{MASS, UNKNOWN_VARIANCE};
-use jointscope_fixture::BodyKind;
 use jointscope_inference::Parameter;
 use jointscope_linalg::{ComplexMatrix2, RealMatrix2};
 use num_complex::Complex64;
@@ -295,14 +294,7 @@ fn nearest_start(viscous: &Problem, first: &Fitted, law: &Dynamics) -> Option<(V
 
 /// Mass of the joint between these sides for one unit of its coordinate, kg.
 pub(super) fn mass_scale(sides: &Sides) -> f64 {
-    let mass = |alpha: bool| -> f64 {
-        let bodies = sides.side(alpha).bodies().iter();
-        let own = bodies.map(|body| match &body.kind {
-            BodyKind::Rigid(rigid) => rigid.mass.value,
-            BodyKind::Beam(beam) => beam.mass_per_length.value * (beam.to.value - beam.from.value),
-        });
-        own.sum()
-    };
+    let mass = |alpha: bool| -> f64 { sides.side(alpha).bodies().iter().map(|body| body.kind.mass()).sum() };
     MASS * mass(true).min(mass(false))
 }
 

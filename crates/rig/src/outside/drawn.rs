@@ -62,7 +62,7 @@ impl Outside {
 }
 
 fn inerter(rng: &mut impl Rng, fixture: &Fixture, joint: &Joint) -> Outside {
-    let masses = fixture.bodies().iter().map(|body| mass(&body.kind));
+    let masses = fixture.bodies().iter().map(|body| body.kind.mass());
     let lightest = masses.fold(f64::INFINITY, f64::min);
     Outside::Inerter { joint: joint.name.clone(), inertance: lightest * log_uniform(rng, 0.003, 0.3) }
 }
@@ -89,7 +89,7 @@ fn gyroscope(rng: &mut impl Rng, fixture: &Fixture) -> Option<Outside> {
     let turning: Vec<_> =
         fixture.points().iter().filter(|p| fixture.bodies()[p.body].kind.rotates()).collect();
     let point = choice(rng, &turning)?;
-    let arm = 0.03 * mass(&fixture.bodies()[point.body].kind);
+    let arm = 0.03 * fixture.bodies()[point.body].kind.mass();
     let coupling = sign(rng) * arm * TAU * log_uniform(rng, 3.0, 100.0);
     Some(Outside::Gyroscope { point: point.name.clone(), coupling })
 }
@@ -126,7 +126,7 @@ fn cable(rng: &mut impl Rng, fixture: &Fixture) -> Option<Outside> {
     Some(Outside::Cable {
         body: body.name.clone(),
         x: on.x.value,
-        mass: mass(&body.kind) * log_uniform(rng, 3e-4, 0.03),
+        mass: body.kind.mass() * log_uniform(rng, 3e-4, 0.03),
         frequency: log_uniform(rng, 15.0, 250.0),
         damping_ratio: log_uniform(rng, 0.01, 0.05),
     })
@@ -141,19 +141,12 @@ fn clock_error(rng: &mut impl Rng, recorded: &[FrfPair]) -> Option<Outside> {
 
 fn base_motion(rng: &mut impl Rng, fixture: &Fixture) -> Option<Outside> {
     fixture.supports().first()?;
-    let whole: f64 = fixture.bodies().iter().map(|body| mass(&body.kind)).sum();
+    let whole: f64 = fixture.bodies().iter().map(|body| body.kind.mass()).sum();
     Some(Outside::BaseMotion {
         mass: whole * log_uniform(rng, 1.0, 100.0),
         frequency: log_uniform(rng, 3.0, 50.0),
         damping_ratio: log_uniform(rng, 0.01, 0.1),
     })
-}
-
-fn mass(body: &BodyKind) -> f64 {
-    match body {
-        BodyKind::Rigid(rigid) => rigid.mass.value,
-        BodyKind::Beam(beam) => beam.mass_per_length.value * (beam.to.value - beam.from.value),
-    }
 }
 
 /// Transverse stiffness of a joint at its far end, its rotation held, N/m.

@@ -54,7 +54,7 @@ fn element_count(beam: &BeamBody) -> f64 {
     let bending_stiffness = beam.youngs_modulus.value * beam.second_moment.value;
     let omega = TAU * HIGHEST;
     let wave_number = (beam.mass_per_length.value * omega * omega / bending_stiffness).sqrt().sqrt();
-    let needed = wave_number * (beam.to.value - beam.from.value) / SIZE;
+    let needed = wave_number * beam.length() / SIZE;
     needed.ceil().clamp(ELEMENTS[0], ELEMENTS[1])
 }
 
