@@ -1,5 +1,6 @@
 //! The commands of the program, each with its arguments in a file of its own.
 
+mod again;
 mod check;
 mod compare;
 mod completions;

@@ -11,10 +11,11 @@ use jointscope::{Answer, Band, Fixture, Outcome, SpectralLines, effect_name, pla
 use serde_json::Value;
 
 use crate::answered::Destination;
+use crate::commands::again::{self, ReadDiagnose};
 use crate::commands::diagnose::{self, DiagnoseArguments};
 use crate::commands::many::ManyArguments;
 use crate::estimation_arguments::EstimationArguments;
-use crate::input::{self, FixtureFile};
+use crate::input::FixtureFile;
 use crate::origin;
 use crate::output::{Outputs, counted, pretty};
 use crate::progress;
@@ -86,9 +87,6 @@ struct Planned {
     notes: Vec<String>,
 }
 
-/// The arguments of a command line that diagnoses; `None` of any other.
-type ReadDiagnose = fn(&[String]) -> Option<DiagnoseArguments>;
-
 /// Plans; answers with the suggestions, the best first.
 pub(super) fn run(arguments: &PlanArguments, read: ReadDiagnose) -> Result<String, Refusal> {
     let folder = arguments.output.iter();
@@ -144,7 +142,7 @@ fn diagnosed(arguments: &PlanArguments, read: ReadDiagnose) -> Result<Diagnosed,
         _ => None,
     });
     let again = match directory {
-        Some(path) => of_diagnosis(path, &arguments.fixture, read)?,
+        Some(path) => again::of_diagnosis(path, &arguments.fixture, read)?,
         None if arguments.files.is_empty() => {
             return Err(Refusal::new(
                 "nothing was recorded that could be diagnosed; give the recordings or the directory of a diagnosis, or ask for an interval with `--interval JOINT/k11=1%`",
@@ -171,44 +169,6 @@ fn diagnosed(arguments: &PlanArguments, read: ReadDiagnose) -> Result<Diagnosed,
 
 fn recording(arguments: &PlanArguments) -> RecordingArguments {
     RecordingArguments { files: arguments.files.clone(), reading: arguments.reading.clone() }
-}
-
-/// The arguments of the diagnosis that wrote a file, its inputs as they were then.
-fn of_diagnosis(path: &Path, fixture: &Path, read: ReadDiagnose) -> Result<DiagnoseArguments, Refusal> {
-    let directory = path.is_dir().then_some(path);
-    let path = directory.map_or(path.to_owned(), |directory| directory.join("diagnosis.json"));
-    if let Some(directory) = directory.filter(|_| !path.exists()) {
-        return Err(Refusal::holding_no(directory, "diagnosis.json", "diagnose"));
-    }
-    let file = input::json(&path)?;
-    let not_one = || {
-        Refusal::at(
-            &path,
-            "is no diagnosis.json: it does not say which command made it; make it anew with `jointscope diagnose`",
-        )
-    };
-    let command = file["made"]["command"].as_str().ok_or_else(not_one)?;
-    let words = origin::words(command);
-    let arguments = read(&words).ok_or_else(not_one)?;
-    for made_of in file["made"]["inputs"].as_array().into_iter().flatten() {
-        let (Some(name), Some(hash)) = (made_of["file"].as_str(), made_of["sha256"].as_str()) else {
-            return Err(not_one());
-        };
-        if input::sha256(Path::new(name))? != hash {
-            let problem = format!("has changed since {} was made; diagnose anew", path.display());
-            return Err(Refusal::at(Path::new(name), problem));
-        }
-    }
-    let same = |a: &Path, b: &Path| a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
-    if !same(&arguments.fixture, fixture) {
-        let problem = format!(
-            "is not the fixture that {} was made with, {}",
-            path.display(),
-            arguments.fixture.display()
-        );
-        return Err(Refusal::at(fixture, problem));
-    }
-    Ok(arguments)
 }
 
 /// A plan for the names that are left.

@@ -68,6 +68,28 @@ fn two_tests_together_write_the_names_they_leave_and_a_page() {
 }
 
 #[test]
+fn a_diagnosis_is_made_again_from_any_directory() {
+    let bench = look_alikes("plan-from-elsewhere");
+    bench.done(&["diagnose", "fixture.json", "first-test.uff", "-o", "./results/first"]);
+    fs::create_dir(bench.0.join("elsewhere")).unwrap();
+    // Another test's files, of the same names.
+    for file in ["fixture.json", "first-test.uff"] {
+        fs::write(bench.0.join("elsewhere").join(file), "of another test").unwrap();
+    }
+    let planned = |directory: &str, arguments: [&str; 3]| {
+        let program = env!("CARGO_BIN_EXE_jointscope");
+        let directory = bench.0.join(directory);
+        let output =
+            std::process::Command::new(program).args(arguments).current_dir(directory).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let from_there = planned(".", ["plan", "fixture.json", "results/first"]);
+    assert_eq!(planned("elsewhere", ["plan", "../fixture.json", "../results/first"]), from_there);
+    assert_eq!(planned("results", ["plan", "../fixture.json", "first/diagnosis.json"]), from_there);
+}
+
+#[test]
 fn what_cannot_be_planned_is_refused_in_a_sentence() {
     let bench = look_alikes("plan-refused");
     bench.refused(&["plan", "fixture.json"], &["nothing was recorded", "--interval"]);
