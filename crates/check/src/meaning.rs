@@ -65,7 +65,7 @@ pub(crate) fn of(fixture: &Fixture, quantity: &NamedQuantity, total_mass: f64) -
         }
         (QuantityOwner::Body(body), Key::MassPerLength) => {
             let BodyKind::Beam(beam) = &fixture.bodies()[body].kind else { return None };
-            let length = beam.to.value - beam.from.value;
+            let length = beam.length();
             Some(format!("{} over {}", engineering(1e3 * value * length, "g"), millimetres(length)))
         }
         (QuantityOwner::Body(_), Key::Mass) if fixture.bodies().len() > 1 => {

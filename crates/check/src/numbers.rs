@@ -1,9 +1,11 @@
 //! Every number of a fixture file.
 
-use crate::settings::numbers::{HIGH_DAMPING, PLACE_DEVIATION, VAGUE_DEVIATION};
+use crate::settings::numbers::{HIGH_DAMPING, PLACE_DEVIATION, SLOWEST_SUPPORT, VAGUE_DEVIATION};
 use crate::{Remark, Totals, meaning};
-use jointscope_fixture::{Fixture, NamedQuantity, QuantityKey, QuantityOwner, Spread};
+use jointscope_fixture::{Dof, Fixture, NamedQuantity, QuantityKey, QuantityOwner, Spread};
+use jointscope_spectra::in_sentence;
 use serde::Serialize;
+use std::f64::consts::TAU;
 
 /// How a number's deviation is known.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -48,7 +50,7 @@ pub(crate) fn of(fixture: &Fixture, remarks: &mut Vec<Remark>) -> Vec<Number> {
             (Some(_), Some(0.0)) => Known::Default,
             _ => Known::Stated,
         };
-        odd(&quantity, known, remarks);
+        odd(&quantity, known, mass, remarks);
         numbers.push(Number {
             means: meaning::of(fixture, &quantity, mass),
             path: quantity.path,
@@ -76,7 +78,7 @@ pub(crate) fn of(fixture: &Fixture, remarks: &mut Vec<Remark>) -> Vec<Number> {
     numbers
 }
 
-fn odd(quantity: &NamedQuantity, known: Known, remarks: &mut Vec<Remark>) {
+fn odd(quantity: &NamedQuantity, known: Known, total_mass: f64, remarks: &mut Vec<Remark>) {
     if let QuantityKey::ModalRatio(_) = quantity.key
         && quantity.value > HIGH_DAMPING
     {
@@ -93,6 +95,19 @@ fn odd(quantity: &NamedQuantity, known: Known, remarks: &mut Vec<Remark>) {
         remarks.push(Remark::odd(
             &quantity.path,
             "its place is unknown: measure it, and put it with its deviation, such as {\"value\": 0.031, \"std\": 0.0005}",
+        ));
+    }
+    if let QuantityKey::SupportStiffness(Dof::Translation) = quantity.key
+        && (0.0..total_mass * (TAU * SLOWEST_SUPPORT).powi(2)).contains(&quantity.value)
+    {
+        remarks.push(Remark::odd(
+            &quantity.path,
+            format!(
+                "{} N/m hold {} kg at {} Hz, softer than any foam or cord: a stiffness is in N/m, 3 N/mm is written 3000; a support that holds nothing is left out",
+                in_sentence(quantity.value),
+                in_sentence(total_mass),
+                in_sentence((quantity.value / total_mass).sqrt() / TAU)
+            ),
         ));
     }
     let of_place = quantity.nature == jointscope_fixture::Nature::Abscissa;
@@ -119,6 +134,20 @@ fn odd(quantity: &NamedQuantity, known: Known, remarks: &mut Vec<Remark>) {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_support_that_carries_next_to_nothing_is_odd_and_one_of_foam_is_not() {
+        let odd = |stiffness: &str| {
+            let fixture = Fixture::from_json(&format!(
+                r#"{{ "bodies": {{ "A": {{ "mass": 1.5, "inertia": 1e-3, "x_cg": 0 }} }}, "points": {{ "1": {{ "body": "A", "x": 0.05 }} }},
+                  "supports": {{ "left": {{ "point": "1", "stiffness": {stiffness} }} }} }}"#
+            ));
+            let mut remarks = Vec::new();
+            of(&fixture.unwrap(), &mut remarks);
+            remarks.iter().filter(|remark| remark.place == "supports/left/stiffness").count()
+        };
+        assert_eq!(["0.003", "3", "3000"].map(odd), [1, 0, 0]);
+    }
 
     #[test]
     fn every_number_is_listed_with_where_its_deviation_comes_from() {

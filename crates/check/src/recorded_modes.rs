@@ -1,8 +1,8 @@
 //! The recording's modes beside the fixture's.
 
-use crate::ModelModes;
-use crate::settings::recorded_modes::FURTHER_ORDERS;
+use crate::settings::recorded_modes::{DEVIATIONS, FURTHER_ORDERS, SUSPENSION};
 use crate::settings::work::MOST_VALUES;
+use crate::{Figure, ModelModes};
 use jointscope_fixture::Fixture;
 use jointscope_modes::{ModalAnalysis, ModesError, ModesOptions};
 use jointscope_pipeline::measured_damping;
@@ -18,10 +18,12 @@ pub struct ModePair {
     pub std: f64,
     /// Its damping ratio.
     pub damping_ratio: f64,
-    /// Natural frequency of the fixture's elastic mode, Hz; `None` where none is alike.
+    /// Natural frequency of the fixture's mode, Hz; `None` where none is alike.
     pub fixture: Option<f64>,
-    /// Correlation of their shapes, 0 to 1.
+    /// Correlation of their shapes, 0 to 1, where they bend the assembly.
     pub mac: Option<f64>,
+    /// Whether the assembly moves as rigid on its supports in it: by the frequency alone.
+    pub on_supports: bool,
 }
 
 /// The recording's modes.
@@ -62,13 +64,20 @@ pub(crate) fn of(
         let pair = matched.matches.pairs.iter().find(|pair| pair.measured == index)?;
         Some((matched.elastic[pair.expected], pair.mac))
     };
-    let modes = analysis.modes.iter().enumerate().map(|(index, mode)| ModePair {
-        frequency: mode.frequency,
-        std: mode.frequency_std,
-        damping_ratio: mode.damping_ratio,
-        fixture: pairs(index).map(|pair| pair.0),
-        mac: pairs(index).map(|pair| pair.1),
-    });
+    let mut modes: Vec<ModePair> = analysis
+        .modes
+        .iter()
+        .enumerate()
+        .map(|(index, mode)| ModePair {
+            frequency: mode.frequency,
+            std: mode.frequency_std,
+            damping_ratio: mode.damping_ratio,
+            fixture: pairs(index).map(|pair| pair.0),
+            mac: pairs(index).map(|pair| pair.1),
+            on_supports: false,
+        })
+        .collect();
+    pair_on_supports(&mut modes, model);
     let hz = analysis.lines().hz();
     let within = |f: &f64| *f >= hz[0] && *f <= hz[hz.len() - 1];
     let missing = match &matched {
@@ -78,5 +87,24 @@ pub(crate) fn of(
         }
         Err(_) => Vec::new(),
     };
-    Ok(RecordedModes { modes: modes.collect(), missing })
+    Ok(RecordedModes { modes, missing })
+}
+
+/// Pairs what no elastic mode is with the modes in which the fixture moves as rigid on its supports, the
+/// nearest first.
+fn pair_on_supports(modes: &mut [ModePair], model: &ModelModes) {
+    let mut left: Vec<Figure> =
+        model.modes.iter().filter(|mode| mode.on_supports).map(|mode| mode.frequency).collect();
+    loop {
+        let open = modes.iter().enumerate().filter(|(_, mode)| mode.fixture.is_none());
+        let near = open.flat_map(|(m, mode)| {
+            left.iter().enumerate().filter_map(move |(s, suspended)| {
+                let allowed = SUSPENSION.max(DEVIATIONS * suspended.std.unwrap_or(0.0) / suspended.value);
+                let apart = (mode.frequency / suspended.value).ln().abs();
+                (apart < allowed).then_some((apart, m, s))
+            })
+        });
+        let Some((_, m, s)) = near.min_by(|a, b| a.0.total_cmp(&b.0)) else { return };
+        (modes[m].fixture, modes[m].on_supports) = (Some(left.swap_remove(s).value), true);
+    }
 }

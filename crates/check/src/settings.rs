@@ -46,6 +46,8 @@ pub(crate) mod numbers {
     pub(crate) const VAGUE_DEVIATION: f64 = 0.5;
     /// Deviation of a place (m) that no ruler has.
     pub(crate) const PLACE_DEVIATION: f64 = 0.05;
+    /// Frequency (Hz) below which no support carries a structure: a pendulum would be a hundred metres long.
+    pub(crate) const SLOWEST_SUPPORT: f64 = 0.05;
 }
 
 /// FRFs of the fixture, drawn beside the recording.
@@ -114,6 +116,11 @@ pub(crate) mod reciprocity {
 pub(crate) mod recorded_modes {
     /// Orders beyond two for every mode of the model.
     pub(crate) const FURTHER_ORDERS: usize = 10;
+    /// How far (ln) a mode on the supports may be from the fixture's: foam and cords are known to a fifth or a
+    /// third of their stiffness.
+    pub(crate) const SUSPENSION: f64 = 0.2;
+    /// As many deviations, where the fixture states more.
+    pub(crate) const DEVIATIONS: f64 = 3.0;
 }
 
 /// The mass line.

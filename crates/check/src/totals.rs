@@ -77,8 +77,7 @@ fn parts(fixture: &Fixture) -> Vec<MassPart> {
                 inertia: rigid.inertia.filter(|_| rigid.rotates).map(|inertia| inertia.value),
             },
             BodyKind::Beam(beam) => {
-                let length = beam.to.value - beam.from.value;
-                let mass = beam.mass_per_length.value * length;
+                let (length, mass) = (beam.length(), body.kind.mass());
                 let x = 0.5 * (beam.from.value + beam.to.value);
                 MassPart {
                     path: path.clone(),

@@ -306,6 +306,24 @@ fn a_soft_suspension_that_the_fixture_lacks_is_not_called_hum_alone() {
 }
 
 #[test]
+fn modes_on_the_stated_supports_are_the_fixture_s_however_soft_the_foam_turned_out() {
+    let on_foam = |softer: f64| {
+        let supports = json!({ "left": { "body": "A", "x": -0.03, "stiffness": 2e4 * softer, "damping": 2.0 }, "right": { "body": "B", "x": 0.09, "stiffness": 3e4 * softer, "damping": 2.0 } });
+        fixture(&[("/supports", supports)])
+    };
+    let checked = check(&on_foam(1.0), recorded(&on_foam(0.8)));
+    let modes = checked.recording.unwrap().modes.unwrap().modes;
+    let suspended: Vec<f64> = modes
+        .iter()
+        .filter(|mode| mode.on_supports)
+        .map(|mode| mode.frequency / mode.fixture.unwrap())
+        .collect();
+    assert_eq!(suspended.len(), 2, "{modes:?}");
+    assert!(suspended.iter().all(|ratio| (ratio / 0.8f64.sqrt() - 1.0).abs() < 0.02), "{suspended:?}");
+    assert!(modes.iter().any(|mode| !mode.on_supports && mode.mac.is_some()), "{modes:?}");
+}
+
+#[test]
 fn a_suspension_too_stiff_to_weigh_by_is_told_with_its_frequency_and_not_with_an_empty_band() {
     let ground = json!({ "a": { "point": "1", "stiffness": 2e6 }, "b": { "point": "4", "stiffness": 2e6 } });
     let fixture = fixture(&[("/supports", ground)]);

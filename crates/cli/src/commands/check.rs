@@ -159,7 +159,8 @@ fn of_recording(recording: &jointscope::check::RecordingCheck) -> Vec<String> {
         let shown = modes.modes.iter().map(|mode| match mode.fixture {
             Some(fixture) => {
                 let change = 100.0 * (mode.frequency / fixture - 1.0);
-                format!("{} Hz ({} %)", in_sentence(mode.frequency), with_sign(change, 1))
+                let moving = if mode.on_supports { ", as rigid on its supports" } else { "" };
+                format!("{} Hz ({} %{moving})", in_sentence(mode.frequency), with_sign(change, 1))
             }
             None => format!("{} Hz (none of the fixture's)", in_sentence(mode.frequency)),
         });

@@ -13,7 +13,7 @@ pub(super) fn modes(modes: &ModelModes, recording: Option<&RecordingCheck>) -> S
     let table = Table::of(&modes.modes)
         .numbers("Natural frequency", "Hz", |mode| hertz(mode.frequency.value, mode.frequency.std))
         .numbers("Damping ratio", "%", |mode| significant(100.0 * mode.damping_ratio, 3))
-        .words("", |mode| if mode.on_supports { "as rigid on its supports" } else { "" })
+        .words("", |mode| moves(mode.on_supports))
         .footnote(format!(
             "{} at 0 Hz; modes up to {} Hz. The deviations are those that the fixture's own tolerances leave.",
             counted(modes.rigid, "rigid-body mode"),
@@ -39,7 +39,8 @@ pub(super) fn modes(modes: &ModelModes, recording: Option<&RecordingCheck>) -> S
         .numbers("Damping ratio", "%", |mode| significant(100.0 * mode.damping_ratio, 3))
         .numbers("Fixture", "Hz", |mode| mode.fixture.map_or("–".to_owned(), |hz| hertz(hz, None)))
         .numbers("Recorded differs by", "", shift)
-        .numbers("MAC", "", |mode| mode.mac.map_or("–".to_owned(), |mac| fixed(mac, 2)));
+        .numbers("MAC", "", |mode| mode.mac.map_or("–".to_owned(), |mac| fixed(mac, 2)))
+        .words("", |mode| moves(mode.on_supports));
     let section = section.with(beside);
     if found.missing.is_empty() {
         return section;
@@ -50,6 +51,11 @@ pub(super) fn modes(modes: &ModelModes, recording: Option<&RecordingCheck>) -> S
         if missing.len() == 1 { "" } else { "s" },
         missing.join(", ")
     ))
+}
+
+/// What a mode moves, where it does not bend the assembly.
+fn moves(on_supports: bool) -> &'static str {
+    if on_supports { "as rigid on its supports" } else { "" }
 }
 
 /// How many modes the recording shows, and the fixture.
