@@ -57,6 +57,9 @@ const WIDTH: f64 = 860.0;
 const HEIGHT: f64 = 170.0;
 const SIDE: f64 = 30.0;
 
+/// Entries whose names have room beside each other where the drawing is as narrow as a telephone.
+const FEW: usize = 12;
+
 /// Translations of a mode, responses first, from left to right.
 fn translations(mode: &Mode, fixture: Option<&Fixture>) -> Vec<Entry> {
     let mut names: Vec<&Channel> = mode.responses.iter().chain(&mode.references).map(|(c, _)| c).collect();
@@ -101,7 +104,7 @@ fn draw(mode: &Mode, fixture: Option<&Fixture>, title: &str) -> Markup {
         shape.map(|entry| format!("{:.1},{:.1}", px(entry.x), py(entry.value))).collect()
     };
     html! {
-        svg.fx xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } data-middle=(middle) role="img" aria-label=(title) {
+        svg.fx.few[all.len() <= FEW] xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } data-middle=(middle) role="img" aria-label=(title) {
             (PreEscaped(STYLE))
             line.shape-rest x1=(SIDE) x2=(WIDTH - SIDE) y1=(middle) y2=(middle) {}
             polyline.shape-response points=(points(true).join(" ")) {}
