@@ -11,7 +11,7 @@
 //! 3. **Maximum likelihood.** Poles, participations, residues and residual terms are refined on
 //!    α(s) = Σ [ρ/(s − λ) + ρ̄/(s − λ̄)] + L/s² + U with the FRFs' variances as weights, residues eliminated.
 //!    The inverse of the information is the Cramér–Rao bound that the standard deviations are taken from;
-//!    estimates reach it (`tests/all/statistics.rs`, `docs/guide/modes.md`).
+//!    estimates reach it (`tests/all/statistics.rs`, `docs/reference/modes.md`).
 //!
 //! Then each FRF is asked by itself. Where they do not agree on a pole, as after a structure has warmed up
 //! between hits, the mode [drifts](DriftingMode): frequency and damping ratio are means over the FRFs, and

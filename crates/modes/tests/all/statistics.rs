@@ -1,4 +1,4 @@
-//! Estimates against the Cramér–Rao bound. The figures in `docs/guide/modes.md` come from the example
+//! Estimates against the Cramér–Rao bound. The figures in `docs/reference/modes.md` come from the example
 //! `accuracy`, which does the same with more seeds.
 
 use crate::common::bound::scenarios;
