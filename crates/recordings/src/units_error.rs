@@ -15,9 +15,7 @@ pub enum UnitsError {
         label: String,
     },
     /// Neither data type nor label say what the quantity is.
-    #[error(
-        "the file does not say what the {axis} is (data type {data_type}, units label `{label}`); say it with `--assume-units`, such as `--assume-units m/s^2,N`"
-    )]
+    #[error("the file does not say what the {axis} is{}; say it with `--assume-units`, such as `--assume-units m/s^2,N`", stated(*.data_type, .label))]
     Absent {
         /// `response` or `force`.
         axis: &'static str,
@@ -90,4 +88,12 @@ pub enum UnitsError {
         /// The label stated.
         label: String,
     },
+}
+
+/// What a universal file states all the same; a column of a CSV or MATLAB file has neither.
+fn stated(data_type: i32, label: &str) -> String {
+    match (data_type, label) {
+        (0, "" | "NONE") => ": there is no unit".to_owned(),
+        _ => format!(" (data type {data_type}, units label `{label}`)"),
+    }
 }
