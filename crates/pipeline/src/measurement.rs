@@ -7,7 +7,6 @@ use jointscope_recordings::{
     Hits, Level, ReadOptions, Recording, RecordingError, Source, TimeHistories, hits_of,
 };
 use jointscope_spectra::FrfSet;
-use std::collections::BTreeMap;
 
 /// What a test recorded, in the fixture's terms and SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -47,7 +46,6 @@ impl From<FrfSet> for Measurement {
             levels: vec![Level { held: None, frfs, recorded_forms, window_decay: 0.0 }],
             time_histories: TimeHistories::default(),
             notes: Vec::new(),
-            skipped_datasets: BTreeMap::new(),
         })
     }
 }

@@ -1,6 +1,6 @@
 //! The datasets of a test as FRFs between a fixture's points, or as hits, or as levels.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use jointscope_fixture::Fixture;
 use jointscope_spectra::{FrfForm, FrfSet, SpectralLines, in_text};
@@ -37,8 +37,6 @@ pub struct Recording {
     pub time_histories: TimeHistories,
     /// What a reader of the results should know of the files: one plain sentence each.
     pub notes: Vec<String>,
-    /// Number of datasets of each other number (geometry, headers, …).
-    pub skipped_datasets: BTreeMap<u32, usize>,
 }
 
 /// FRFs at one amplitude.
@@ -105,7 +103,6 @@ impl Recording {
                 channels: distinct(&gathered.time_histories),
             },
             notes: notes.texts,
-            skipped_datasets: skipped(sources),
         })
     }
 
@@ -232,14 +229,6 @@ fn distinct(channels: &[FileChannel]) -> Vec<FileChannel> {
 }
 
 /// Number of datasets of each number that is not read.
-fn skipped(sources: &[Source]) -> BTreeMap<u32, usize> {
-    let mut all = BTreeMap::new();
-    for (number, count) in sources.iter().flat_map(|source| &source.file.skipped) {
-        *all.entry(*number).or_default() += count;
-    }
-    all
-}
-
 fn without_frfs(sources: &[Source], gathered: &Gathered) -> RecordingError {
     let files = match sources {
         [] => "no files".to_owned(),

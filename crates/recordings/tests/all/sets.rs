@@ -294,18 +294,6 @@ fn an_frf_that_every_other_reference_has_is_missed_aloud() {
     );
 }
 
-#[test]
-fn datasets_of_other_numbers_are_counted_over_all_files() {
-    let file = |name: &str, datasets| {
-        let mut source = source(name, datasets);
-        source.file = UffFile { skipped: [(15, 1), (2411, 2)].into(), ..source.file };
-        source
-    };
-    let sources = [file("a.uff", vec![frf((4, 2), (1, 2))]), file("b.uff", vec![])];
-    let recording = Recording::of(&sources, &fixture(), &ReadOptions::default()).unwrap();
-    assert_eq!(recording.skipped_datasets, [(15, 2), (2411, 4)].into());
-}
-
 proptest! {
     #[test]
     fn the_order_of_datasets_means_nothing(order in Just((0..9).collect::<Vec<usize>>()).prop_shuffle()) {
