@@ -1,6 +1,8 @@
 //! Quantities of the repaired model that are farther from what is stated than chance takes them.
 
-use crate::numbers::{decimals, listed, prefixed, rounded, significant};
+use crate::format::significant;
+use crate::numbers::{decimals, listed, rounded, with_unit};
+use crate::unit::Scale;
 use jointscope_diagnosis::{Departure, Diagnosis};
 use jointscope_findings::Verdict;
 
@@ -39,12 +41,11 @@ fn moved(diagnosis: &Diagnosis, departure: &Departure) -> String {
     let tolerances = diagnosis.search.repaired.hypothesis.tolerances();
     let own = tolerances.iter().find(|tolerance| tolerance.quantity.path == *path);
     let unit = own.map_or("", |tolerance| tolerance.quantity.key.unit());
-    let (factor, unit) = prefixed(*stated, unit);
-    let unit = if unit.is_empty() { unit } else { format!(" {unit}") };
+    let scale = Scale::of_stated([*stated], unit);
     // One digit of the standard deviation.
-    let number = |value: f64| rounded(value * factor, decimals(std * factor) - 1);
+    let number = |value: f64| with_unit(&rounded(scale.of(value), decimals(scale.of(*std)) - 1), &scale);
     format!(
-        "{path} would have to be {}{unit}, {} standard deviations from the stated {}{unit}",
+        "{path} would have to be {}, {} standard deviations from the stated {}",
         number(*repaired),
         significant(deviations.abs(), 2),
         number(*stated)

@@ -4,9 +4,9 @@ mod remarks;
 
 use crate::departures::departed;
 use crate::finding::{found, it, with_fitted_size};
-use crate::format::fixed;
+use crate::format::{fixed, significant};
 use crate::misfit::{sits, varies};
-use crate::numbers::{apart, figures, significant};
+use crate::numbers::{apart, figures};
 use crate::places::quantity_name;
 use crate::{Says, model_error};
 use jointscope_diagnosis::{Diagnosis, OddRecord, Tried};

@@ -1,7 +1,8 @@
 //! A test that drifted, in a sentence.
 
 use crate::Says;
-use crate::numbers::{decimals, listed, rounded, significant};
+use crate::format::significant;
+use crate::numbers::{decimals, listed, rounded};
 use jointscope_diagnosis::{ReferenceChange, TestDrift};
 
 /// Names of what may have drifted are given up to so many.
@@ -69,7 +70,7 @@ fn frequencies(drift: &TestDrift, own: &ReferenceChange) -> Option<String> {
 fn by_chance(p_value: f64) -> String {
     match p_value < 1e-9 {
         true => "below 10⁻⁹".to_owned(),
-        false => format!("of {}", crate::format::significant(p_value, 2)),
+        false => format!("of {}", significant(p_value, 2)),
     }
 }
 

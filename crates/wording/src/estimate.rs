@@ -1,6 +1,7 @@
 //! A parameter with its interval.
 
-use crate::numbers::{decimals, plain, prefixed, rounded};
+use crate::numbers::{decimals, plain, rounded, with_unit};
+use crate::unit::Scale;
 use jointscope_findings::Estimate;
 use jointscope_inference::Z95;
 
@@ -17,20 +18,19 @@ pub(crate) fn size_of(estimate: &Estimate, data: &str) -> String {
     if estimate.is_vague() {
         return format!("{} (order of magnitude only)", plain(value, unit));
     }
-    let (factor, unit) = prefixed(value, unit);
-    let half_width = (high - low) * 0.5 * factor;
-    let number = |value: f64| to_precision(value * factor, half_width);
-    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
-    format!("{}{unit} (95 %: {} to {}{unit})", number(value), number(low), number(high))
+    let scale = Scale::of_stated([value], unit);
+    let half_width = scale.of(0.5 * (high - low));
+    let number = |value: f64| to_precision(scale.of(value), half_width);
+    let [most, high] = [value, high].map(|value| with_unit(&number(value), &scale));
+    format!("{most} (95 %: {} to {high})", number(low))
 }
 
 /// The value alone, with as many digits as its deviation leaves.
 pub(crate) fn rounded_value(estimate: &Estimate) -> String {
     match estimate.std.filter(|std| *std > 0.0 && *std < estimate.value.abs()) {
         Some(std) => {
-            let (factor, unit) = prefixed(estimate.value, estimate.unit);
-            let number = rounded(estimate.value * factor, decimals(Z95 * std * factor));
-            if unit.is_empty() { number } else { format!("{number} {unit}") }
+            let scale = Scale::of_stated([estimate.value], estimate.unit);
+            with_unit(&rounded(scale.of(estimate.value), decimals(scale.of(Z95 * std))), &scale)
         }
         None => plain(estimate.value, estimate.unit),
     }

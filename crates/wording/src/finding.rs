@@ -2,8 +2,8 @@
 
 use crate::effects::{effect_name, meaning};
 use crate::estimate::rounded_value;
-use crate::format::quantity_in;
-use crate::numbers::{Short, listed, plain};
+use crate::format::{quantity_in, significant};
+use crate::numbers::{listed, plain};
 use crate::unit::Scale;
 use crate::{Says, amplitude};
 use jointscope_diagnosis::{Diagnosis, Elsewhere, Finding as FrfFinding};
@@ -121,7 +121,7 @@ impl Says for HitFinding {
         format!(
             "{}; the hits move it by up to {} {motion}{}.",
             meaning(&self.effect, &self.estimates, "hits"),
-            Short(self.evidence.reach),
+            significant(self.evidence.reach, 4),
             look_alikes(self, "hits")
         )
     }

@@ -217,7 +217,7 @@ pub fn percent(share: f64, decimals: usize) -> String {
 }
 
 /// Rounds to `decimals`, negative ones meaning tens and hundreds.
-fn rounded(value: f64, decimals: i32) -> String {
+pub(crate) fn rounded(value: f64, decimals: i32) -> String {
     let value = if decimals < 0 {
         let step = 10f64.powi(-decimals);
         (value / step).round() * step
@@ -245,7 +245,7 @@ fn power_of_ten(exponent: i32) -> String {
 }
 
 /// The typographic minus sign, and no sign on a number that rounded to zero.
-pub(crate) fn minus(number: &str) -> String {
+fn minus(number: &str) -> String {
     match number.strip_prefix('-') {
         Some(digits) if digits.chars().all(|c| matches!(c, '0' | '.')) => digits.to_owned(),
         Some(digits) => format!("−{digits}"),

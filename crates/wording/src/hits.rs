@@ -1,6 +1,6 @@
 //! A diagnosis of hits in sentences.
 
-use crate::numbers::Short;
+use crate::format::significant;
 use crate::{Remarks, Says, amplitude};
 use jointscope_findings::Verdict;
 use jointscope_nonlinear::NonlinearDiagnosis;
@@ -14,7 +14,8 @@ impl Says for NonlinearDiagnosis {
             (Some(first), Some(last)) => (first.peak_force, last.peak_force),
             _ => (0.0, 0.0),
         };
-        let range = format!("between hits of {} N and {} N", Short(weakest), Short(strongest));
+        let range =
+            format!("between hits of {} N and {} N", significant(weakest, 4), significant(strongest, 4));
         let chance = match homogeneity.p_value < 1e-3 {
             true => "p < 0.001".to_owned(),
             false => format!("p = {:.2}", homogeneity.p_value),
@@ -47,14 +48,14 @@ impl Remarks for NonlinearDiagnosis {
                 let (motion, force) = amplitude::units(reach.dof);
                 remarks.push(format!(
                     "Joint {} was moved by {} {motion} at the most in {}: a gap wider than that, and friction that sticks up to about {} {force}, are out of reach of these hits.",
-                    reach.joint, Short(reach.motion), reach.dof.name(), Short(reach.force)
+                    reach.joint, significant(reach.motion, 4), reach.dof.name(), significant(reach.force, 4)
                 ));
             }
         }
         if let Some(time) = self.followed {
             remarks.push(format!(
                 "Some hits are compared only up to {} s after the blow: from there on the motion depends on more than the force is known to, and no model could follow it.",
-                Short(time)
+                significant(time, 4)
             ));
         }
         if !self.homogeneity.from_repeats {

@@ -1,7 +1,7 @@
 //! What a reader should know of the joint found from all FRFs.
 
-use crate::format::quantity;
-use crate::numbers::{listed, percent, plain, significant};
+use crate::format::{quantity, significant};
+use crate::numbers::{listed, percent, plain};
 use crate::{Remarks, Says};
 use jointscope_decomposition::{Analysis, FoundJoint, JointFit, JointTests, JointsFit, LawFit, LawKind};
 use jointscope_inference::interval95;

@@ -2,8 +2,9 @@
 
 use crate::departures::remaining;
 use crate::finding::{found, it};
+use crate::format::significant;
 use crate::misfit::{shows, varies};
-use crate::numbers::{figures, listed, percent, significant};
+use crate::numbers::{figures, listed, percent};
 use crate::places::quantity_name;
 use jointscope_diagnosis::{Diagnosis, ModalSettings, ModelError};
 use jointscope_findings::Verdict;

@@ -1,7 +1,8 @@
 //! Places in words, and how what is missing there goes with frequency.
 
 use crate::Says;
-use crate::numbers::{plain, significant};
+use crate::format::significant;
+use crate::numbers::plain;
 use jointscope_diagnosis::{Location, Phase, Site, Variation};
 
 /// Exponents up to this size count as level.

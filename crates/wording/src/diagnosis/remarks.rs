@@ -2,7 +2,8 @@
 
 use crate::effects::effect_name;
 use crate::finding::with_fitted_size;
-use crate::numbers::{listed, significant};
+use crate::format::significant;
+use crate::numbers::listed;
 use crate::{Remarks, Says};
 use jointscope_diagnosis::{Diagnosis, Observation, RecordEnd, Tried};
 use jointscope_frf::noise::NoiseSource;
