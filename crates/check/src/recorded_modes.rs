@@ -90,21 +90,28 @@ pub(crate) fn of(
     Ok(RecordedModes { modes, missing })
 }
 
-/// Pairs what no elastic mode is with the modes in which the fixture moves as rigid on its supports, the
-/// nearest first.
+/// Pairs what no elastic mode is with the modes in which the fixture moves as rigid on its supports, in their
+/// order: foam that is softer than stated lowers all of them.
 fn pair_on_supports(modes: &mut [ModePair], model: &ModelModes) {
-    let mut left: Vec<Figure> =
+    let suspended: Vec<Figure> =
         model.modes.iter().filter(|mode| mode.on_supports).map(|mode| mode.frequency).collect();
-    loop {
-        let open = modes.iter().enumerate().filter(|(_, mode)| mode.fixture.is_none());
-        let near = open.flat_map(|(m, mode)| {
-            left.iter().enumerate().filter_map(move |(s, suspended)| {
-                let allowed = SUSPENSION.max(DEVIATIONS * suspended.std.unwrap_or(0.0) / suspended.value);
-                let apart = (mode.frequency / suspended.value).ln().abs();
-                (apart < allowed).then_some((apart, m, s))
-            })
-        });
-        let Some((_, m, s)) = near.min_by(|a, b| a.0.total_cmp(&b.0)) else { return };
-        (modes[m].fixture, modes[m].on_supports) = (Some(left.swap_remove(s).value), true);
+    let open: Vec<usize> = (0..modes.len()).filter(|&m| modes[m].fixture.is_none()).collect();
+    let apart = |m: usize, s: usize| (modes[m].frequency / suspended[s].value).ln().abs();
+    // The fewer along the more of them.
+    let count = open.len().min(suspended.len());
+    let beside = |skipped: usize| -> Vec<(usize, usize)> {
+        let (first_open, first) = if open.len() > count { (skipped, 0) } else { (0, skipped) };
+        (0..count).map(|k| (open[first_open + k], first + k)).collect()
+    };
+    let distance = |pairs: &Vec<(usize, usize)>| -> f64 { pairs.iter().map(|&(m, s)| apart(m, s)).sum() };
+    let all = (0..=open.len().max(suspended.len()) - count).map(beside);
+    let Some(nearest) = all.min_by(|a, b| distance(a).total_cmp(&distance(b))) else { return };
+    let is_near = |&(m, s): &(usize, usize)| {
+        let Figure { value, std, .. } = suspended[s];
+        apart(m, s) < SUSPENSION.max(DEVIATIONS * std.unwrap_or(0.0) / value)
+    };
+    let paired: Vec<(usize, usize)> = nearest.into_iter().filter(is_near).collect();
+    for (m, s) in paired {
+        (modes[m].fixture, modes[m].on_supports) = (Some(suspended[s].value), true);
     }
 }
