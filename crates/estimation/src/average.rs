@@ -4,7 +4,8 @@ use num_complex::Complex64;
 
 use crate::Estimator;
 use crate::settings::weights::{
-    FEWEST_LINES, LEAST_FREEDOM, LINES_LOOKED_AT, MOST_RATIO, PASS_RANGE, SETTLED, UNEQUAL, WEIGHT_PASSES,
+    ALONE, FEWEST_LINES, LEAST_FREEDOM, LINES_LOOKED_AT, MOST_RATIO, PASS_RANGE, SETTLED, UNEQUAL,
+    WEIGHT_PASSES,
 };
 
 /// The averaged spectra of one response and force on one line.
@@ -73,7 +74,9 @@ pub(crate) fn variance_of_unequal_hits(hits: &[Pair], weights: &[f64], line: usi
 /// spectra are divided by the noise of their hit: the noise σ_k² is what makes the residuals |Y_k − H·X_k|²,
 /// relative to their mean over the hits on each line, as large as their leverage lets them be.
 ///
-/// Equal weights where the noise is alike, or cannot be told.
+/// Equal weights where the noise is alike, or cannot be told. It cannot where hits differ by one thing, each by
+/// as much as it has of it, as by a blow that lands a little beside the last one: any of them then explains
+/// itself without a residual, and the weights run towards one that is no better than the others.
 pub(crate) fn weights_by_noise(hits: &[Pair], lines: std::ops::Range<usize>) -> Vec<f64> {
     let n = hits.len();
     let plain = vec![1.0; n];
@@ -116,7 +119,36 @@ pub(crate) fn weights_by_noise(hits: &[Pair], lines: std::ops::Range<usize>) -> 
     }
     let (low, high) =
         variance.iter().fold((f64::INFINITY, 0.0f64), |(low, high), v| (low.min(*v), high.max(*v)));
-    if high > UNEQUAL * UNEQUAL * low { variance.iter().map(|v| 1.0 / v).collect() } else { plain }
+    let weights: Vec<f64> = variance.iter().map(|v| 1.0 / v).collect();
+    if high > UNEQUAL * UNEQUAL * low && !differ_by_one_thing(hits, &weights, &lines) {
+        weights
+    } else {
+        plain
+    }
+}
+
+/// Whether the average is one hit's alone, and what two others differ from it by has one course over the lines:
+/// noise of two hits has none in common.
+fn differ_by_one_thing(hits: &[Pair], weights: &[f64], lines: &[usize]) -> bool {
+    let mut shares = vec![0.0; hits.len()];
+    let mut residuals = vec![Vec::with_capacity(lines.len()); hits.len()];
+    for &line in lines {
+        let sum = averaged(hits, weights, line);
+        let Some(h1) = sum.frf(Estimator::H1) else { continue };
+        for (k, (force, response)) in hits.iter().enumerate() {
+            shares[k] += weights[k] * force[line].norm_sqr() / sum.force / lines.len() as f64;
+            residuals[k].push(response[line] - h1 * force[line]);
+        }
+    }
+    let Some(alone) = (0..hits.len()).max_by(|&a, &b| shares[a].total_cmp(&shares[b])) else { return false };
+    let others: Vec<usize> = (0..hits.len()).filter(|&k| k != alone).collect();
+    let power = |k: usize| residuals[k].iter().map(|r: &Complex64| r.norm_sqr()).sum::<f64>();
+    let coherent = |a: usize, b: usize| {
+        let common: Complex64 = residuals[a].iter().zip(&residuals[b]).map(|(x, y)| x * y.conj()).sum();
+        common.norm() > ALONE.1 * (power(a) * power(b)).sqrt()
+    };
+    let pairs = || others.iter().enumerate().flat_map(|(i, &a)| others[i + 1..].iter().map(move |&b| (a, b)));
+    shares[alone] > ALONE.0 && pairs().filter(|&(a, b)| coherent(a, b)).count() * 2 > pairs().count()
 }
 
 #[cfg(test)]
@@ -168,6 +200,24 @@ mod tests {
                 assert!((0.7..1.4).contains(&share), "noises {noises:?}: {weights:?}");
             }
         }
+    }
+
+    #[test]
+    fn blows_that_land_beside_each_other_are_no_hits_of_unequal_noise_and_one_clean_hit_is() {
+        // What a blow that lands elsewhere adds, of one course over the lines, as much as it is off.
+        let scattered = |off: &[f64]| {
+            let mut hits = simulated(&vec![1.0; off.len()], &vec![1e-3; off.len()], 6);
+            for ((force, response), off) in hits.iter_mut().zip(off) {
+                for (line, (x, y)) in force.iter().zip(response.iter_mut()).enumerate() {
+                    *y += x * Complex64::from_polar(*off, 0.02 * line as f64);
+                }
+            }
+            let pairs: Vec<Pair> = hits.iter().map(|(x, y)| (x.as_slice(), y.as_slice())).collect();
+            weights_by_noise(&pairs, 0..600)
+        };
+        assert_eq!(scattered(&[0.01, -0.05, 0.04, 0.02, -0.03]), [1.0; 5]);
+        let clean = found(&[1.0; 5], &[2e-3, 0.2, 0.2, 0.2, 0.2], 7);
+        assert!(clean[0] > 100.0 * clean[1], "{clean:?}");
     }
 
     #[test]

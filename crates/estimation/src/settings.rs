@@ -175,6 +175,9 @@ pub(crate) mod weights {
     pub(crate) const SETTLED: f64 = 1e-3;
     /// Noise of two hits differs by no more than this, or it is not noise.
     pub(crate) const MOST_RATIO: f64 = 1e4;
+    /// Share of an average from which it is one hit's alone, and the coherence from which on what others differ
+    /// from that one by is no noise.
+    pub(crate) const ALONE: (f64, f64) = (0.9, 0.5);
     /// What the leverage of a hit leaves its residuals of freedom, at the least: the stronger of two very
     /// unequal hits has next to none.
     pub(crate) const LEAST_FREEDOM: f64 = 1e-3;
