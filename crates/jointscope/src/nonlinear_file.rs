@@ -3,7 +3,7 @@
 use crate::file::{value, with_sentence};
 use jointscope_findings::{HeldOut, Verdict, by_model};
 use jointscope_nonlinear::{
-    ForceStateError, ForceStateMap, Homogeneity, ModelFit, NonlinearDiagnosis, Reach,
+    FittedQuantity, ForceStateError, ForceStateMap, Homogeneity, ModelFit, NonlinearDiagnosis, Reach,
 };
 use jointscope_wording::{Remarks, Says};
 use serde::Serialize;
@@ -30,6 +30,7 @@ pub(crate) fn nonlinear_file(diagnosis: &NonlinearDiagnosis) -> Value {
         }),
         refitted: models.map_or_else(Vec::new, |[_, refitted, _]| quantities(refitted)),
         repaired: models.map_or_else(Vec::new, |[.., repaired]| quantities(repaired)),
+        departures: models.map_or_else(Vec::new, |[.., repaired]| departures(repaired)),
         homogeneity: &diagnosis.homogeneity,
         reach: &diagnosis.reach,
         force_state: diagnosis.maps.iter().map(Map::of).collect(),
@@ -47,6 +48,7 @@ struct NonlinearFile<'a> {
     fit: Option<Errors<'a>>,
     refitted: Vec<Quantity<'a>>,
     repaired: Vec<Quantity<'a>>,
+    departures: Vec<Quantity<'a>>,
     homogeneity: &'a Homogeneity,
     reach: &'a [Reach],
     force_state: Vec<Map<'a>>,
@@ -75,17 +77,30 @@ struct Quantity<'a> {
     path: &'a str,
     nominal: f64,
     std: Option<f64>,
+    value: f64,
     departure: Option<f64>,
+    unit: &'static str,
+}
+
+impl<'a> Quantity<'a> {
+    fn of(FittedQuantity { stated, value, deviations, .. }: &'a FittedQuantity) -> Self {
+        Quantity {
+            path: &stated.path,
+            nominal: stated.value,
+            std: stated.std,
+            value: *value,
+            departure: stated.std.map(|_| *deviations),
+            unit: stated.key.unit(),
+        }
+    }
 }
 
 fn quantities(model: &ModelFit) -> Vec<Quantity<'_>> {
-    let all = model.quantities.iter().map(|(quantity, departure)| Quantity {
-        path: &quantity.path,
-        nominal: quantity.value,
-        std: quantity.std,
-        departure: quantity.std.map(|_| *departure),
-    });
-    all.collect()
+    model.quantities.iter().map(Quantity::of).collect()
+}
+
+fn departures(model: &ModelFit) -> Vec<Quantity<'_>> {
+    model.departed().into_iter().map(Quantity::of).collect()
 }
 
 /// A force–state map, or why it cannot be drawn.

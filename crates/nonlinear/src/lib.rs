@@ -51,7 +51,7 @@ pub use error::{ChannelError, DiagnoseError, ForceStateError, SimulationError, S
 pub use force_state::{ForceState, ForceStateMap, MotionSource};
 pub use identification::diagnosis::{NonlinearDiagnosis, NonlinearOptions, Reach};
 pub use identification::homogeneity::{HitLevel, Homogeneity};
-pub use identification::judge::{HitEvidence, HitFinding, ModelFit};
+pub use identification::judge::{FittedQuantity, HitEvidence, HitFinding, ModelFit};
 pub use jointscope_findings::{Estimate, HeldOut, Verdict};
 pub use stepped::course::{DampingCourse, FrequencyCourse};
 pub use stepped::diagnosis::{LevelResult, SteppedDiagnosis};

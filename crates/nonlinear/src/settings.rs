@@ -174,6 +174,9 @@ pub(crate) mod search {
     pub(crate) const WORTH: [f64; 2] = [0.75, 0.1];
     /// Fall of χ² and priors that a law must bring in any case.
     pub(crate) const LEAST_GAIN: f64 = 30.0;
+    /// The same beside another law, as a share of what that one brings: no joint follows a law to a thousandth,
+    /// and what is left of it is no law.
+    pub(crate) const LEAST_SHARE: f64 = 1e-3;
 }
 
 /// The fit of a hypothesis. A simulation costs seconds, its derivatives many of them.
@@ -242,6 +245,8 @@ pub(crate) mod horizon {
 pub(crate) mod judgement {
     /// χ² per degree of freedom above which a model leaves something unexplained.
     pub(crate) const LEFT_OVER: f64 = 1.5;
+    /// Standard deviations beyond which chance takes no quantity of the fixture.
+    pub(crate) const DEPARTED: f64 = 4.0;
     /// How much finer the last fit steps than the search: what steps leave of bias must not exceed what noise
     /// leaves of doubt.
     pub(crate) const FINER: usize = 2;
@@ -356,6 +361,9 @@ pub(crate) mod naming {
     /// laboratory's nine harmonics, a tenth of the usual noise and a fixture that is exact, they err by 0.1
     /// to 0.7 %.
     pub(crate) const HARMONIC_BALANCE_ERROR: f64 = 5e-3;
+    /// Relative error of FRFs that the same balance leaves of the right law: up to 0.011 of friction that shifts
+    /// a resonance by 6 %.
+    pub(crate) const LAW_ERROR: f64 = 0.01;
     /// Probability from which an alternative is listed.
     pub(crate) const LEAST_SHOWN: f64 = 5e-4;
 }

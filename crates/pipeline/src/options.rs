@@ -40,6 +40,26 @@ impl Options {
         }
     }
 
+    /// What was asked for that a diagnosis of what depends on amplitude does not heed, a sentence each.
+    pub(crate) fn unheeded_where_amplitude_matters(&self) -> Vec<String> {
+        let DiagnosisOptions { baseline, time_limit, hold_out, .. } = &self.diagnosis;
+        let windowed = self.estimate.force_window != EstimateOptions::for_models().force_window;
+        let asked = [
+            (baseline.is_some(), "the baseline"),
+            (time_limit.is_some(), "the limit of time"),
+            (!hold_out.is_empty(), "the FRFs to hold out"),
+            (windowed, "the window over the force"),
+        ];
+        let unheeded: Vec<&str> = asked.into_iter().filter(|(is, _)| *is).map(|(_, what)| what).collect();
+        match unheeded.as_slice() {
+            [] => Vec::new(),
+            all => vec![format!(
+                "FRFs change with amplitude, and what depends on it was looked for: {} had no part in that",
+                all.join(", ")
+            )],
+        }
+    }
+
     /// Refuses a choice of lines that leaves none, or so few that they tell neither a mode nor a misfit from
     /// noise.
     pub(crate) fn check(&self, frfs: &FrfSet) -> Result<(), Error> {
@@ -64,6 +84,17 @@ mod tests {
         let pairs = vec![FrfPair::transverse("1", "1")];
         FrfSet::new(lines, FrfForm::Accelerance, pairs, vec![Complex64::ONE; count])
             .unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    #[test]
+    fn what_a_diagnosis_by_amplitude_does_not_heed_is_told_and_nothing_where_all_is_heeded() {
+        let mut options = Options::default();
+        options.diagnosis.band = Some((10.0, 500.0));
+        assert!(options.unheeded_where_amplitude_matters().is_empty());
+        options.diagnosis.time_limit = Some(std::time::Duration::from_secs(5));
+        options.diagnosis.baseline = Some(on_lines(20));
+        let told = options.unheeded_where_amplitude_matters();
+        assert!(told.len() == 1 && told[0].contains("the baseline, the limit of time"), "{told:?}");
     }
 
     #[test]

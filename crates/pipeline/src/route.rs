@@ -72,7 +72,10 @@ pub fn diagnose(
         Measurement::Hits(hits) => hits::homogeneity(fixture, hits, options)?,
     };
     let (measured, homogeneity) = match homogeneity {
-        Homogeneity::Changes(answer) => return Ok(*answer),
+        Homogeneity::Changes(mut answer) => {
+            answer.notes.extend(options.unheeded_where_amplitude_matters());
+            return Ok(*answer);
+        }
         Homogeneity::Linear(measured, p_value) => (*measured, p_value),
     };
     // Before anything is said of the fixture's numbers: on a few lines they look like any others.

@@ -37,23 +37,29 @@ pub(crate) fn remaining(diagnosis: &Diagnosis) -> impl Iterator<Item = &Departur
 
 /// `bodies/F1/mass would have to be 4.23 kg, 10 standard deviations from the stated 3.50 kg`.
 fn moved(diagnosis: &Diagnosis, departure: &Departure) -> String {
-    let Departure { path, stated, std, repaired, deviations, .. } = departure;
     let tolerances = diagnosis.search.repaired.hypothesis.tolerances();
-    let own = tolerances.iter().find(|tolerance| tolerance.quantity.path == *path);
+    let own = tolerances.iter().find(|tolerance| tolerance.quantity.path == departure.path);
     let unit = own.map_or("", |tolerance| tolerance.quantity.key.unit());
-    let scale = Scale::of_stated([*stated], unit);
+    let Departure { path, stated, std, repaired, deviations, .. } = departure;
+    would_be(path, unit, [*stated, *std, *repaired], *deviations)
+}
+
+/// `bodies/F1/mass would have to be 4.23 kg, 10 standard deviations from the stated 3.50 kg`, of what is
+/// stated, its deviation and what it would be.
+pub(crate) fn would_be(path: &str, unit: &str, [stated, std, repaired]: [f64; 3], deviations: f64) -> String {
+    let scale = Scale::of_stated([stated], unit);
     // One digit of the standard deviation.
-    let number = |value: f64| with_unit(&rounded(scale.of(value), decimals(scale.of(*std)) - 1), &scale);
+    let number = |value: f64| with_unit(&rounded(scale.of(value), decimals(scale.of(std)) - 1), &scale);
     format!(
         "{path} would have to be {}, {} standard deviations from the stated {}",
-        number(*repaired),
+        number(repaired),
         significant(deviations.abs(), 2),
-        number(*stated)
+        number(stated)
     )
 }
 
 /// ` (as would be too far from what is stated: joints/J/length and 2 more)`.
-fn also(others: &[String]) -> String {
+pub(crate) fn also(others: &[String]) -> String {
     let mut names = others[..others.len().min(NAMES)].to_vec();
     if others.len() > NAMES {
         names.push(format!("{} more", others.len() - NAMES));

@@ -1,5 +1,6 @@
 //! A diagnosis of hits in sentences.
 
+use crate::departures::{also, would_be};
 use crate::format::significant;
 use crate::{Remarks, Says, amplitude};
 use jointscope_findings::Verdict;
@@ -26,8 +27,9 @@ impl Says for NonlinearDiagnosis {
             ),
             Verdict::Explained => format!("FRFs change {range} ({chance}), and what was found explains how."),
             Verdict::PartlyExplained => {
+                let left = departed(self).unwrap_or_else(|| "something is left".to_owned());
                 format!(
-                    "FRFs change {range} ({chance}); what was found is needed and explains most of it, but something is left."
+                    "FRFs change {range} ({chance}); what was found is needed and explains most of it, but {left}."
                 )
             }
             Verdict::Unexplained => format!(
@@ -37,6 +39,22 @@ impl Says for NonlinearDiagnosis {
             ),
         }
     }
+}
+
+/// What the stated quantities take up beside the laws found, and what to do about it.
+fn departed(diagnosis: &NonlinearDiagnosis) -> Option<String> {
+    let [.., repaired] = diagnosis.models.as_ref()?;
+    // Beside a law that is not the right one quantities tell nothing.
+    let departed = repaired.departed();
+    let first = departed.first().filter(|_| repaired.leaves_noise_alone())?;
+    let std = first.stated.std?;
+    let numbers = [first.stated.value, std, first.value];
+    let others: Vec<String> = departed[1..].iter().map(|other| other.stated.path.clone()).collect();
+    Some(format!(
+        "{}{}: something that does not depend on amplitude is left out besides; measure again what is stated, or diagnose the FRFs of the weakest hits alone",
+        would_be(&first.stated.path, first.stated.key.unit(), numbers, first.deviations),
+        also(&others)
+    ))
 }
 
 /// How far the hits reach, and how the noise was measured.

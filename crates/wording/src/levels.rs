@@ -31,7 +31,11 @@ impl Says for SteppedDiagnosis {
                 let names: Vec<String> = findings.iter().map(|f| kind(f).to_owned()).collect();
                 let names = names.join(" with ");
                 let share = 100.0 * findings[0].evidence.share;
-                let left = if verdict == Verdict::Explained { "" } else { ", and something is left" };
+                let left = match verdict {
+                    Verdict::Explained => "",
+                    _ if self.levels.len() < 3 => ", as other laws do: two levels do not tell which",
+                    _ => ", and something is left",
+                };
                 if self.holds == self.levels.len() {
                     return format!(
                         "{course} {} at {place} explains {share:.0} % of the change{left}.",
@@ -136,6 +140,11 @@ impl Remarks for SteppedDiagnosis {
             remarks.push(format!(
                 "Friction and a cubic spring together at {} in {} would leave a relative error of {:.3}, but two laws follow {} levels by their freedom: that is no evidence for either.",
                 two.joint, two.dof.name(), two.nrmse, self.levels.len()
+            ));
+        }
+        if let Some(channel) = &self.held_at {
+            remarks.push(format!(
+                "The amplitude that was held is taken to be that of response {channel}, the first of the files, for no FRF is of a driving point. Of another response the law would be of another size: put the FRF of the response that was held first."
             ));
         }
         if self.levels.len() < 3 {

@@ -5,6 +5,7 @@ use super::homogeneity::{Homogeneity, homogeneity};
 use super::hypothesis::Hypothesis;
 use super::judge::{HitFinding, Judged, Judgement, ModelFit, Step};
 use super::locations::{JointLocation, locations};
+use super::needed::needed;
 use super::records::{Record, held_out, records};
 use super::search::{Search, Span};
 use crate::settings::band::{BEYOND_BAND, BEYOND_ELASTIC, FORCE_ENDS, SAMPLING_ENDS};
@@ -135,34 +136,48 @@ fn judged(fixture: &Fixture, all: &[Record], (lines, elastic): Bands, exact: boo
         if !steps.is_empty() && enough() {
             break;
         }
-        let base = if steps.is_empty() { &nominal } else { &best.hypothesis };
-        let model = base.to_fixture().unwrap_or_else(|_| fixture.clone());
-        let (fits, followed) = search.hypotheses(&model, base);
-        if fits.is_empty() {
-            break;
-        }
-        // What is not followed counts for neither.
-        whole = search.view(&followed);
-        let mut before = Fit::of(&whole, &best.hypothesis, 1)?;
-        let (fits, freed) = search.acting(&whole, fits);
-        if let Some(freed) = freed.filter(|freed| freed.objective < before.objective) {
-            if let Some(step) = steps.last_mut() {
-                step.gain += before.objective - freed.objective;
-                step.fits.iter_mut().take(1).for_each(|fit| *fit = freed.clone());
+        // From quantities that hold what is left out no law may be seen; from the stated ones none where these
+        // are wrong.
+        let bases = match steps.is_empty() {
+            true if best.hypothesis.has_departed() => vec![nominal.clone(), best.hypothesis.clone()],
+            true => vec![nominal.clone()],
+            false => vec![best.hypothesis.clone()],
+        };
+        let mut is_found = false;
+        for base in bases {
+            let model = base.to_fixture().unwrap_or_else(|_| fixture.clone());
+            let (fits, followed) = search.hypotheses(&model, &base);
+            if fits.is_empty() {
+                continue;
             }
-            best = freed.clone();
-            before = freed;
+            // What is not followed counts for neither.
+            whole = search.view(&followed);
+            let mut before = Fit::of(&whole, &best.hypothesis, 1)?;
+            let (fits, freed) = search.acting(&whole, fits);
+            if let Some(freed) = freed.filter(|freed| freed.objective < before.objective) {
+                if let Some(step) = steps.last_mut() {
+                    step.gain += before.objective - freed.objective;
+                    step.fits.iter_mut().take(1).for_each(|fit| *fit = freed.clone());
+                }
+                best = freed.clone();
+                before = freed;
+            }
+            let excess = |fit: &Fit| (fit.objective - whole.degrees()).max(0.0);
+            let is_worth_it = |first: &&Fit| {
+                excess(first) <= (1.0 - worth) * excess(&before)
+                    && first.objective + LEAST_GAIN <= before.objective
+            };
+            if let Some(first) = fits.first().filter(is_worth_it).cloned() {
+                steps.push(Step { gain: before.objective - first.objective, fits });
+                (best, span, is_found) = (first, followed, true);
+                break;
+            }
         }
-        let Some(first) = fits.first() else { break };
-        let excess = |fit: &Fit| (fit.objective - whole.degrees()).max(0.0);
-        if excess(first) > (1.0 - worth) * excess(&before) || first.objective + LEAST_GAIN > before.objective
-        {
+        if !is_found {
             break;
         }
-        best = first.clone();
-        steps.push(Step { gain: before.objective - best.objective, fits });
-        span = followed;
     }
+    let (best, steps) = needed(&search.view(&span), best, steps)?;
     let judgement = Judgement { all, held: &held, search: &search, span: &span };
     judgement.of([&nominal, &refitted.hypothesis], &best, &steps)
 }

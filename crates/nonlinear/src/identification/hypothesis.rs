@@ -3,6 +3,7 @@
 
 use crate::RestoringLaw;
 use crate::settings::fit::{LONGEST, LONGEST_OF_EFFECT};
+use crate::settings::judgement::DEPARTED;
 use jointscope_fixture::{
     Effect, Fixture, FixtureError, NamedQuantity, Nature, Quantity, QuantityOwner, SupportPlace,
 };
@@ -58,15 +59,23 @@ impl Hypothesis {
         less
     }
 
-    /// The same without the effect that was added last.
-    pub(crate) fn without_last(&self) -> Self {
+    /// The same without effect `index`; as it is where there is none.
+    pub(crate) fn without(&self, index: usize) -> Self {
         let mut less = self.clone();
-        if let Some(last) = less.effects.pop() {
-            let left = less.coordinates.len() - last.parameters.len();
-            less.coordinates.truncate(left);
-            less.parameters.truncate(left);
+        if index < less.effects.len() {
+            let own: Vec<usize> = self.parameters_of(index).map(|(_, place)| place).collect();
+            let of_others = |place: &usize| !own.contains(place);
+            let kept: Vec<usize> = (0..self.coordinates.len()).filter(of_others).collect();
+            less.coordinates = kept.iter().map(|&place| self.coordinates[place]).collect();
+            less.parameters = kept.iter().map(|&place| self.parameters[place]).collect();
+            less.effects.remove(index);
         }
         less
+    }
+
+    /// The same without the effect that was added last.
+    pub(crate) fn without_last(&self) -> Self {
+        self.without(self.effects.len().wrapping_sub(1))
     }
 
     /// The effects at the present coordinates.
@@ -95,6 +104,11 @@ impl Hypothesis {
     /// What departures from the stated values cost: Σ (departure/std)².
     pub(crate) fn squared_departures(&self) -> f64 {
         self.parameters.iter().zip(&self.coordinates).map(|(p, at)| p.squared_departure(*at)).sum()
+    }
+
+    /// Whether some quantity is farther from what is stated than chance takes it.
+    pub(crate) fn has_departed(&self) -> bool {
+        self.quantities.iter().zip(&self.coordinates).any(|(own, at)| has_departed(&own.quantity, *at))
     }
 
     /// Step of coordinate `index` for a difference quotient.
@@ -131,6 +145,11 @@ impl Hypothesis {
         let physics = [fixture.physics(), &self.effects()].concat();
         fixture.with_physics(physics)
     }
+}
+
+/// Whether so many deviations of a quantity, where one is stated, are more than chance makes.
+pub(crate) fn has_departed(quantity: &NamedQuantity, deviations: f64) -> bool {
+    quantity.std.is_some_and(|std| std > 0.0) && deviations.abs() > DEPARTED
 }
 
 /// How each parameter of an amplitude-dependent effect moves: by its logarithm, or in parts of where it

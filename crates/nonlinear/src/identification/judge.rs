@@ -3,7 +3,7 @@
 
 use super::fit::Fit;
 use super::horizon::horizons;
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{Hypothesis, has_departed};
 use super::locations::locations;
 use super::misfit::{Focus, View};
 use super::records::Record;
@@ -16,6 +16,7 @@ use crate::settings::judgement::{
 };
 use jointscope_findings::{Finding, HeldOut, Verdict};
 use jointscope_fixture::{Effect, Fixture, NamedQuantity};
+use jointscope_tolerances::Tolerance;
 use serde::Serialize;
 
 /// A law that the hits need.
@@ -43,8 +44,41 @@ pub struct ModelFit {
     pub nrmse: f64,
     /// χ² per degree of freedom.
     pub chi2_per_dof: f64,
-    /// Quantities that could move, and where each ended in its standard deviations.
-    pub quantities: Vec<(NamedQuantity, f64)>,
+    /// Quantities that could move.
+    pub quantities: Vec<FittedQuantity>,
+}
+
+/// A quantity that could move, and where it ended.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct FittedQuantity {
+    /// As it is stated.
+    pub stated: NamedQuantity,
+    /// The fitted value, SI.
+    pub value: f64,
+    /// Its departure from what is stated, in standard deviations.
+    pub deviations: f64,
+}
+
+impl FittedQuantity {
+    fn of((tolerance, at): (&Tolerance, &f64)) -> Self {
+        FittedQuantity { stated: tolerance.quantity.clone(), value: tolerance.value(*at), deviations: *at }
+    }
+}
+
+impl ModelFit {
+    /// Whether it explains the responses down to their noise.
+    pub fn leaves_noise_alone(&self) -> bool {
+        self.chi2_per_dof < LEFT_OVER
+    }
+
+    /// The quantities that had to leave their stated values by more than chance makes, the farthest first.
+    pub fn departed(&self) -> Vec<&FittedQuantity> {
+        let departed = |quantity: &&FittedQuantity| has_departed(&quantity.stated, quantity.deviations);
+        let mut all: Vec<&FittedQuantity> = self.quantities.iter().filter(departed).collect();
+        all.sort_by(|a, b| b.deviations.abs().total_cmp(&a.deviations.abs()));
+        all
+    }
 }
 
 /// A law found.
@@ -103,26 +137,28 @@ impl<'a> Judgement<'a> {
             false => self.of_all(&[focus, fine], [&everything, &slopes], best)?,
         };
         let model = |hypothesis: &Hypothesis, chi2: f64| {
-            let quantities = hypothesis.quantities.iter().map(|tolerance| tolerance.quantity.clone());
+            let quantities = hypothesis.quantities.iter().zip(&hypothesis.coordinates);
             Some(ModelFit {
                 fixture: hypothesis.to_fixture().ok()?,
                 nrmse: everything.nrmse(hypothesis)?,
                 chi2_per_dof: chi2 / degrees,
-                quantities: quantities.zip(hypothesis.coordinates.iter().copied()).collect(),
+                quantities: quantities.map(FittedQuantity::of).collect(),
             })
         };
         let chi2_per_dof = repaired.chi2 / degrees;
         let findings = self.findings(&repaired, steps, chi2_per_dof);
-        let verdict = match (findings.is_empty(), chi2_per_dof < LEFT_OVER) {
-            (true, _) => Verdict::Unexplained,
-            (false, true) => Verdict::Explained,
-            (false, false) => Verdict::PartlyExplained,
-        };
         let models = [
             model(nominal, everything.chi2(nominal)?)?,
             model(&refitted.hypothesis, refitted.chi2)?,
             model(&repaired.hypothesis, repaired.chi2)?,
         ];
+        // A mass or a stiffness that is left out is taken up by quantities, and no law accounts for it.
+        let explains = models[2].leaves_noise_alone() && models[2].departed().is_empty();
+        let verdict = match (findings.is_empty(), explains) {
+            (true, _) => Verdict::Unexplained,
+            (false, true) => Verdict::Explained,
+            (false, false) => Verdict::PartlyExplained,
+        };
         Some(Judged { verdict, findings, models, held_out, followed: self.followed(&ends) })
     }
 

@@ -8,6 +8,7 @@ mod hypothesis;
 pub(crate) mod judge;
 mod locations;
 pub(crate) mod misfit;
+mod needed;
 mod reconstruction;
 mod records;
 mod search;

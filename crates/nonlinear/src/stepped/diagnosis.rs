@@ -9,12 +9,11 @@ use super::problem::{Change, Level, Problem};
 use super::resonance::{Resonance, resonance};
 use crate::settings::homogeneity::CHANGED;
 use crate::settings::levels::{ABOUT_PEAK, FEWEST_LINES, LEAST_RATIO, SCATTER_DOUBT, WIDTHS};
-use crate::settings::naming::LEAVES_NOTHING;
 use crate::{NonlinearOptions, SteppedError};
 use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::{Fixture, QuantityKey, QuantityOwner};
 use jointscope_inference::{each_used_up, fisher_above};
-use jointscope_spectra::{Dof, in_sentence};
+use jointscope_spectra::{Channel, Dof, in_sentence};
 use serde::{Serialize, Serializer};
 use std::f64::consts::TAU;
 
@@ -69,6 +68,9 @@ pub struct SteppedDiagnosis {
     pub holds: usize,
     /// The levels over which the laws hold, left out of the fit one by one.
     pub held_out: Option<HeldOut>,
+    /// The response at which the held amplitude is taken to be, where responses were held and no driving point
+    /// tells which.
+    pub held_at: Option<Channel>,
     /// Lines in use, Hz.
     pub band: (f64, f64),
     /// Root-mean-square relative errors over the levels: as stated, refitted, repaired, each level with a
@@ -98,7 +100,7 @@ impl SteppedDiagnosis {
         let (levels, band) = about_the_resonance(&with_noise(levels), options.band)?;
         let resonances = resonances(&levels)?;
         let linear = one_stiffness_for_all(fixture, &levels)?;
-        let closest = linear.iter().min_by(|a, b| a.0.floor.total_cmp(&b.0.floor));
+        let closest = linear.iter().min_by(|a, b| a.0.own_errors().total_cmp(&b.0.own_errors()));
         let change =
             closest.map(|(problem, linear)| changed(problem, linear)).ok_or(SteppedError::NoJoint)?;
         // What does not change is not searched for a law.
@@ -119,7 +121,7 @@ impl SteppedDiagnosis {
         let with_laws = named.map(|n| with_laws(fixture, problem, &n.fit.change, omega));
         let by_fixture = (fixture, options.exact);
         Ok(SteppedDiagnosis {
-            verdict: verdict(changes, named.map(|n| n.count == levels.len() && n.share >= LEAVES_NOTHING)),
+            verdict: verdict(changes, named.map(|n| n.explains_all(levels.len()))),
             place: (problem.joint.clone(), problem.dof),
             nrmse: over_levels(&rows),
             levels: rows,
@@ -128,6 +130,7 @@ impl SteppedDiagnosis {
             findings: named.map_or_else(Vec::new, |n| n.findings(&judged, by_fixture)),
             holds,
             held_out: named.and_then(|n| n.held_out()),
+            held_at: levels[0].held_at(),
             band,
             chi2_per_dof: chi2_per_dof(problem, models),
             fixtures: [refitted.clone(), with_laws.unwrap_or(refitted)],

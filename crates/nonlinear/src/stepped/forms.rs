@@ -92,8 +92,7 @@ fn starts(problem: &Problem, form: Form) -> Vec<Vec<RestoringLaw>> {
     }
 }
 
-/// Share of what the linear change leaves, beyond what a complex stiffness of its own leaves at each level,
-/// that a fit explains.
+/// Share of what the linear change leaves, beyond what no law could take away, that a fit explains.
 pub(crate) fn share(problem: &Problem, linear: &Fitted, fit: &Fitted) -> f64 {
     let floor = problem.floor.powi(2).min(linear.nrmse.powi(2));
     let open = linear.nrmse.powi(2) - floor;

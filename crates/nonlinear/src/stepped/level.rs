@@ -1,6 +1,6 @@
 //! One level of a stepped-sine test.
 
-use jointscope_spectra::FrfSet;
+use jointscope_spectra::{Channel, FrfSet};
 use serde::{Serialize, Serializer};
 use std::fmt;
 
@@ -64,6 +64,13 @@ impl SteppedLevel {
     /// The FRF at whose response the amplitude is held: the driving point, or the first.
     pub(crate) fn watched(&self) -> usize {
         self.frfs.pairs().iter().position(|pair| pair.response == pair.reference).unwrap_or(0)
+    }
+
+    /// That response, where one was held and no driving point tells which.
+    pub(crate) fn held_at(&self) -> Option<Channel> {
+        let pair = &self.frfs.pairs()[self.watched()];
+        let told = pair.response == pair.reference || matches!(self.held, Held::Force(_));
+        (!told).then(|| pair.response.clone())
     }
 
     /// Sum of the FRFs' squares on a line.

@@ -2,11 +2,12 @@
 
 use super::forms::{FORMS, Fitted, fitted, share};
 use super::problem::{BASE, Change, Problem};
-use super::tolerances::tolerance_variances;
+use super::tolerances::{ByTolerances, by_tolerances};
 use crate::RestoringLaw;
 use crate::estimates::estimates;
 use crate::settings::naming::{
-    HARMONIC_BALANCE_ERROR, LEAST_SHOWN, LEVELS_FOR_ONE, LEVELS_FOR_TWO, NAMED, NAMED_TWO,
+    HARMONIC_BALANCE_ERROR, LAW_ERROR, LEAST_SHOWN, LEAVES_NOTHING, LEVELS_FOR_ONE, LEVELS_FOR_TWO, NAMED,
+    NAMED_TWO,
 };
 use jointscope_findings::{Finding, HeldOut};
 use jointscope_fixture::{Effect, Fixture};
@@ -145,16 +146,25 @@ fn best_of(parts: &[(usize, Judged)], count: usize) -> Option<Named> {
 }
 
 impl Named {
+    /// Whether the law leaves nothing worth a word of all `levels`. Of two it cannot: any law follows them.
+    pub(super) fn explains_all(&self, levels: usize) -> bool {
+        levels >= LEVELS_FOR_ONE && self.count == levels && self.share >= LEAVES_NOTHING
+    }
+
     /// `by_fixture`: the fixture, and whether its bare numbers are exact.
     pub(super) fn findings(&self, judged: &[Judged], by_fixture: (&Fixture, bool)) -> Vec<LevelFinding> {
         let effect = |index: usize, law: &RestoringLaw| {
             law.to_effect(&judged[index].problem.joint, judged[index].problem.dof)
         };
+        let (fixture, exact) = by_fixture;
+        let tolerances = by_tolerances(fixture, exact, &self.problem, &self.fit.change);
+        // What the fixture's own numbers and one harmonic leave of the right law tells no law from another.
+        let floor = self.problem.floor.hypot(tolerances.error).hypot(LAW_ERROR);
         // Laplace's approximation with as many observations as the levels have stiffnesses and losses.
         let observations = 2.0 * self.count as f64;
         let badness = |fit: &Fitted| {
             let parameters = (fit.change.parameters().len() - BASE) as f64;
-            2.0 * observations * fit.nrmse.max(self.problem.floor).ln() + parameters * observations.ln()
+            2.0 * observations * fit.nrmse.max(floor).ln() + parameters * observations.ln()
         };
         let least = badness(&self.fit);
         let weigh = |fit: &Fitted| (0.5 * (least - badness(fit))).exp();
@@ -164,7 +174,7 @@ impl Named {
         // What is not explained is the share of something not listed.
         let probability = |fit: &Fitted| self.share * weigh(fit) / total;
         let motions = (self.problem.levels[0].motion(), self.problem.levels[self.count - 1].motion());
-        let deviations = self.deviations(by_fixture);
+        let deviations = self.deviations(&tolerances);
         let mut deviations = deviations.iter().copied().skip(BASE);
         let finding = |(k, law): (usize, &RestoringLaw)| {
             let other = |rival: &&Rival| rival.index != self.index || rival.fit.name() != self.fit.name();
@@ -189,17 +199,16 @@ impl Named {
 
     /// Standard deviations of the parameters: from the scatter of lines, or of fits that leave one level out,
     /// whichever is larger; with what the fixture's tolerances add.
-    fn deviations(&self, (fixture, exact): (&Fixture, bool)) -> Vec<Option<f64>> {
+    fn deviations(&self, tolerances: &ByTolerances) -> Vec<Option<f64>> {
         let by_lines = self.problem.deviations(&self.fit.change);
         let without: Vec<Vec<f64>> =
             (0..self.count).filter_map(|l| Some(self.without(l, &self.fit)?.parameters())).collect();
         let by_levels = (without.len() > 1).then(|| jackknife(&without));
-        let tolerances = tolerance_variances(fixture, exact, &self.problem, &self.fit.change);
         let of = |p: usize| {
             let noise = by_lines.as_ref()?[p].max(by_levels.as_ref().map_or(0.0, |levels| levels.std(p)));
-            Some(noise.hypot(tolerances[p].sqrt()))
+            Some(noise.hypot(tolerances.variances[p].sqrt()))
         };
-        (0..tolerances.len()).map(of).collect()
+        (0..tolerances.variances.len()).map(of).collect()
     }
 
     /// The change fitted to all levels but one.

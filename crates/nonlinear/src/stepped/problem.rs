@@ -20,7 +20,7 @@ pub(crate) struct Problem {
     pub levels: Vec<Level>,
     /// ln of the gain common to all levels, each with its own δ.
     log_gain: f64,
-    /// Root mean square over the levels of each one's relative error, each with its δ.
+    /// Root mean square over the levels of the relative errors that no law could take away.
     pub floor: f64,
     /// Whether laws are read at the motions that the levels' own δ give, whatever they do to d themselves.
     frozen: bool,
@@ -105,6 +105,14 @@ impl Level {
         let of_frf = |frf: usize| Some(frfs.variance(frf)?.iter().map(|v| v.sqrt().recip()));
         let weights = (0..frfs.pairs().len()).map(of_frf).collect::<Option<Vec<_>>>()?;
         finite(weights.into_iter().flatten().collect())
+    }
+
+    /// The noise stated of the level's values, relative to them; zero where they carry none.
+    fn noise(&self) -> f64 {
+        let frfs = &self.measured.frfs;
+        let of_frf = |frf: usize| frfs.variance(frf).map_or(0.0, |variance| variance.iter().sum::<f64>());
+        let power: f64 = frfs.all_values().iter().map(|value| value.norm_sqr()).sum();
+        ((0..frfs.pairs().len()).map(of_frf).sum::<f64>() / power).sqrt()
     }
 
     /// Amplitude of d at the peak.
@@ -233,10 +241,22 @@ impl Problem {
             let motion = |line: usize| level.motion_on(line, 0.0, &|_| level.delta).0;
             level.motions = (0..level.lines.len()).map(motion).collect();
         }
-        problem.floor = problem.mean(|level| problem.own_error(level));
+        problem.floor = problem.beyond_laws();
         let mut motions = problem.levels.iter().flat_map(|level| &level.motions);
         let sound = problem.floor.is_finite() && motions.all(|d| d.is_finite() && *d > 0.0);
         sound.then_some(problem)
+    }
+
+    /// Root mean square over the levels of the relative errors that no law could take away. Where the force was
+    /// held each line moves by an amplitude of its own, and what one δ leaves of the level is the law's doing:
+    /// then no more counts than what the gentlest level leaves, or noise.
+    fn beyond_laws(&self) -> f64 {
+        let gentlest = self.levels.iter().min_by(|a, b| a.motion().total_cmp(&b.motion()));
+        let gentlest = gentlest.map_or(0.0, |level| self.own_error(level));
+        self.mean(|level| match level.measured.held {
+            Held::Response(_) => self.own_error(level),
+            Held::Force(_) => self.own_error(level).min(gentlest.max(level.noise())),
+        })
     }
 
     /// δ of each level and the gain common to all, from values close by.
@@ -333,6 +353,11 @@ impl Problem {
     /// Relative error of a level with its own δ.
     pub(super) fn own_error(&self, level: &Level) -> f64 {
         sum_of_squares(&level.residual(self.log_gain, &|_| level.delta)).sqrt()
+    }
+
+    /// Root mean square over the levels of their relative errors, each with its own δ.
+    pub(super) fn own_errors(&self) -> f64 {
+        self.mean(|level| self.own_error(level))
     }
 
     /// Root mean square of an error over the levels.

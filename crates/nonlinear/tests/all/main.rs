@@ -2,5 +2,6 @@
 #![allow(clippy::unwrap_used)] // helpers of tests fail as tests do
 
 mod force_state;
+mod hits;
 mod homogeneity;
 mod stepped;

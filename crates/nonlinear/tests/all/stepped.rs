@@ -6,7 +6,7 @@ use jointscope_nonlinear::{Held, NonlinearOptions, SteppedDiagnosis, SteppedLeve
 use jointscope_recordings::{HeldAmplitude, ReadOptions, Recording, Source};
 use jointscope_samples::Noise;
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
-use jointscope_wording::Says;
+use jointscope_wording::{Remarks, Says};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -44,6 +44,9 @@ fn gap(d: f64, _: &mut f64) -> f64 {
 /// Steps of a period.
 const STEPS: u32 = 2000;
 
+/// Turns in which the motion on a line is found.
+const TURNS: usize = 16;
+
 /// cos and the weight of the first harmonic at every step of two periods.
 static PHASES: LazyLock<Vec<(f64, Complex64)>> = LazyLock::new(|| {
     let of = |i: u32| {
@@ -80,36 +83,55 @@ fn equivalent(law: Law, amplitude: f64) -> Complex64 {
     harmonics(law, 0.5 * (low + high), amplitude).0
 }
 
-/// Driving-point FRFs of mass B at levels of held response.
+/// Driving-point FRFs of mass B at levels of held response, or of held force.
 struct Clean {
     held: Vec<f64>,
+    quantity: fn(f64) -> Held,
     hz: Vec<f64>,
     levels: Vec<Vec<Complex64>>,
 }
 
 impl Clean {
     fn of(law: Law, held: &[f64]) -> Self {
+        Self::with(law, held, (Held::Response, 12.0), |amplitude, _| amplitude)
+    }
+
+    /// At levels of held force.
+    fn of_forces(law: Law, held: &[f64]) -> Self {
+        Self::with(law, held, (Held::Force, 2.0), |force, accelerance| force * accelerance)
+    }
+
+    /// `acceleration` of mass B at an amplitude that was held, by the accelerance there; lines as many Hz to
+    /// either side.
+    fn with(
+        law: Law,
+        held: &[f64],
+        (quantity, width): (fn(f64) -> Held, f64),
+        acceleration: fn(f64, f64) -> f64,
+    ) -> Self {
         let (m1, m2) = MASSES;
         let natural = (STIFFNESS * (m1 + m2) / (m1 * m2)).sqrt() / TAU;
-        let hz: Vec<f64> = (0..81).map(|i| natural + 12.0 * (f64::from(i) / 40.0 - 1.0)).collect();
+        let hz: Vec<f64> = (0..81).map(|i| natural + width * (f64::from(i) / 40.0 - 1.0)).collect();
         let level = |amplitude: &f64| {
             let mut memory: f64 = 1e-6;
             hz.iter()
                 .map(|hz| {
                     let omega = TAU * hz;
-                    let response = amplitude / (omega * omega);
-                    let mut stiffness = Complex64::ZERO;
-                    let mut motion = Complex64::ZERO;
-                    for _ in 0..4 {
-                        stiffness = STIFFNESS + Complex64::new(0.0, omega * 4.0) + equivalent(law, memory);
-                        motion = -omega * omega * m1 * response / (stiffness - omega * omega * m1);
-                        memory = motion.norm();
+                    let mut accelerance = Complex64::ONE;
+                    for _ in 0..TURNS {
+                        let response = acceleration(*amplitude, accelerance.norm()) / (omega * omega);
+                        let stiffness =
+                            STIFFNESS + Complex64::new(0.0, omega * 4.0) + equivalent(law, memory);
+                        let motion = -omega * omega * m1 * response / (stiffness - omega * omega * m1);
+                        memory = (memory * motion.norm()).sqrt();
+                        accelerance =
+                            -omega * omega * response / (stiffness * motion - omega * omega * m2 * response);
                     }
-                    -omega * omega * response / (stiffness * motion - omega * omega * m2 * response)
+                    accelerance
                 })
                 .collect()
         };
-        Clean { held: held.to_vec(), levels: held.iter().map(level).collect(), hz }
+        Clean { held: held.to_vec(), quantity, levels: held.iter().map(level).collect(), hz }
     }
 
     /// With 0.5 % noise of the largest value.
@@ -122,7 +144,7 @@ impl Clean {
             let values = clean.iter().map(|v| v + 0.005 * most * Complex64::new(noise(), noise())).collect();
             let lines = SpectralLines::new(self.hz.clone()).unwrap();
             let frfs = FrfSet::new(lines, FrfForm::Accelerance, vec![FrfPair::transverse("2", "2")], values);
-            SteppedLevel { held: Held::Response(*amplitude), frfs: frfs.unwrap() }
+            SteppedLevel { held: (self.quantity)(*amplitude), frfs: frfs.unwrap() }
         };
         self.held.iter().zip(&self.levels).map(level).collect()
     }
@@ -173,6 +195,39 @@ fn friction_is_found_with_its_slip_force() {
 #[test]
 fn a_gap_is_found_with_its_clearance() {
     holds(gap, EffectKind::Gap, &[1e-5, 5e5]);
+}
+
+#[test]
+fn where_the_force_was_held_laws_are_told_by_how_peaks_bend() {
+    let found = Clean::of_forces(cubic, &[0.1, 0.2, 0.3, 0.4, 0.45]).diagnosed(1);
+    assert_eq!(found.verdict, Verdict::Explained, "{}", found.says());
+    let finding = &found.findings[0];
+    assert_eq!(finding.effect.kind, EffectKind::CubicStiffness, "{}", finding.says());
+    assert!(finding.probability > 0.9, "{}", finding.says());
+}
+
+#[test]
+fn two_levels_are_followed_by_any_law_and_do_not_explain() {
+    let found = Clean::of(cubic, &[25.0, 100.0]).diagnosed(2);
+    assert_ne!(found.verdict, Verdict::Explained, "{}", found.says());
+    assert!(found.says().contains("two levels do not tell which"), "{}", found.says());
+}
+
+#[test]
+fn a_response_that_was_held_is_told_where_no_driving_point_says_which() {
+    let remarked = |response: &str| {
+        let levels = Clean::of(cubic, &HELD).noisy(2).into_iter().map(|level| {
+            let (lines, values) = (level.frfs.lines().clone(), level.frfs.all_values().to_vec());
+            let pairs = vec![FrfPair::transverse(response, "2")];
+            let frfs = FrfSet::new(lines, FrfForm::Accelerance, pairs, values).unwrap();
+            SteppedLevel { frfs, ..level }
+        });
+        let fixture = Fixture::from_json(FIXTURE).unwrap();
+        let levels: Vec<SteppedLevel> = levels.collect();
+        let found = SteppedDiagnosis::of(&fixture, &levels, &NonlinearOptions::default()).unwrap();
+        found.remarks().iter().any(|remark| remark.contains("response 1, the first of the files"))
+    };
+    assert!(remarked("1") && !remarked("2"));
 }
 
 #[test]
