@@ -1,6 +1,6 @@
 //! The contents of `diagnosis.json`.
 
-use crate::file::{value, with_sentence};
+use crate::file::{Quantity, value, with_sentence};
 use jointscope_diagnosis::{
     Departure, Diagnosis, EndErrors, Finding, FrfMismatch, HeldOut, Hypothesis, LawFit, LineEstimate,
     Location, ModeChange, ModelError, RecordEnd, Tried, Variation, Verdict,
@@ -165,25 +165,9 @@ fn finding(finding: &Finding) -> Value {
     entry
 }
 
-/// A quantity that may move and where it ended, in its unit and in standard deviations of its prior.
-#[derive(Serialize)]
-struct Quantity<'a> {
-    path: &'a str,
-    nominal: f64,
-    std: Option<f64>,
-    value: f64,
-    departure: Option<f64>,
-    unit: &'static str,
-}
-
 fn quantities(hypothesis: &Hypothesis) -> Vec<Quantity<'_>> {
-    let all = hypothesis.tolerances().iter().enumerate().map(|(index, tolerance)| Quantity {
-        path: &tolerance.quantity.path,
-        nominal: tolerance.quantity.value,
-        std: tolerance.quantity.std,
-        value: hypothesis.ended_at(index),
-        departure: tolerance.quantity.std.map(|_| hypothesis.deviations(index)),
-        unit: tolerance.quantity.key.unit(),
+    let all = hypothesis.tolerances().iter().enumerate().map(|(index, tolerance)| {
+        Quantity::of(&tolerance.quantity, hypothesis.ended_at(index), hypothesis.deviations(index))
     });
     all.collect()
 }

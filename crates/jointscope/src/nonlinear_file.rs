@@ -1,6 +1,7 @@
 //! `diagnosis.json` of hits of several strengths, where a joint may have a law of amplitude.
 
-use crate::file::{value, with_sentence};
+use crate::file::{Quantity, value, with_sentence};
+use jointscope_diagnosis::Departure;
 use jointscope_findings::{HeldOut, Verdict, by_model};
 use jointscope_nonlinear::{
     FittedQuantity, ForceStateError, ForceStateMap, Homogeneity, ModelFit, NonlinearDiagnosis, Reach,
@@ -30,7 +31,7 @@ pub(crate) fn nonlinear_file(diagnosis: &NonlinearDiagnosis) -> Value {
         }),
         refitted: models.map_or_else(Vec::new, |[_, refitted, _]| quantities(refitted)),
         repaired: models.map_or_else(Vec::new, |[.., repaired]| quantities(repaired)),
-        departures: models.map_or_else(Vec::new, |[.., repaired]| departures(repaired)),
+        departures: models.map_or_else(Vec::new, departures),
         homogeneity: &diagnosis.homogeneity,
         reach: &diagnosis.reach,
         force_state: diagnosis.maps.iter().map(Map::of).collect(),
@@ -48,7 +49,7 @@ struct NonlinearFile<'a> {
     fit: Option<Errors<'a>>,
     refitted: Vec<Quantity<'a>>,
     repaired: Vec<Quantity<'a>>,
-    departures: Vec<Quantity<'a>>,
+    departures: Vec<Departure>,
     homogeneity: &'a Homogeneity,
     reach: &'a [Reach],
     force_state: Vec<Map<'a>>,
@@ -72,35 +73,25 @@ struct Errors<'a> {
     chi2_per_dof: [f64; 3],
 }
 
-#[derive(Serialize)]
-struct Quantity<'a> {
-    path: &'a str,
-    nominal: f64,
-    std: Option<f64>,
-    value: f64,
-    departure: Option<f64>,
-    unit: &'static str,
-}
-
-impl<'a> Quantity<'a> {
-    fn of(FittedQuantity { stated, value, deviations, .. }: &'a FittedQuantity) -> Self {
-        Quantity {
-            path: &stated.path,
-            nominal: stated.value,
-            std: stated.std,
-            value: *value,
-            departure: stated.std.map(|_| *deviations),
-            unit: stated.key.unit(),
-        }
-    }
-}
-
 fn quantities(model: &ModelFit) -> Vec<Quantity<'_>> {
-    model.quantities.iter().map(Quantity::of).collect()
+    let all = model.quantities.iter();
+    all.map(|quantity| Quantity::of(&quantity.stated, quantity.value, quantity.deviations)).collect()
 }
 
-fn departures(model: &ModelFit) -> Vec<Quantity<'_>> {
-    model.departed().into_iter().map(Quantity::of).collect()
+/// What the repaired model still asks of the stated quantities.
+fn departures([_, refitted, repaired]: &[ModelFit; 3]) -> Vec<Departure> {
+    let refitted = |path: &str| refitted.quantities.iter().find(|quantity| quantity.stated.path == path);
+    let departure = |FittedQuantity { stated, value, deviations, .. }: &FittedQuantity| {
+        Some(Departure {
+            path: stated.path.clone(),
+            stated: stated.value,
+            std: stated.std?,
+            refitted: refitted(&stated.path)?.value,
+            repaired: *value,
+            deviations: *deviations,
+        })
+    };
+    repaired.departed().into_iter().filter_map(departure).collect()
 }
 
 /// A force–state map, or why it cannot be drawn.

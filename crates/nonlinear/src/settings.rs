@@ -245,8 +245,6 @@ pub(crate) mod horizon {
 pub(crate) mod judgement {
     /// χ² per degree of freedom above which a model leaves something unexplained.
     pub(crate) const LEFT_OVER: f64 = 1.5;
-    /// Standard deviations beyond which chance takes no quantity of the fixture.
-    pub(crate) const DEPARTED: f64 = 4.0;
     /// How much finer the last fit steps than the search: what steps leave of bias must not exceed what noise
     /// leaves of doubt.
     pub(crate) const FINER: usize = 2;

@@ -228,7 +228,6 @@ fn distinct(channels: &[FileChannel]) -> Vec<FileChannel> {
     channels.iter().copied().collect::<BTreeSet<_>>().into_iter().collect()
 }
 
-/// Number of datasets of each number that is not read.
 fn without_frfs(sources: &[Source], gathered: &Gathered) -> RecordingError {
     let files = match sources {
         [] => "no files".to_owned(),

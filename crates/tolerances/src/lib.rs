@@ -75,6 +75,10 @@ pub fn is_far(deviations: f64) -> bool {
     deviations.abs() > FAR
 }
 
+/// Standard deviations beyond which a quantity has departed by more than chance makes: once in sixteen
+/// thousand.
+pub const DEPARTED: f64 = 4.0;
+
 /// Standard deviations beyond which a quantity is far: one in twenty is by chance.
 const FAR: f64 = 2.0;
 

@@ -2,9 +2,8 @@
 
 /// Quantities that are stated wrongly.
 pub(crate) mod quantities {
-    /// Standard deviations beyond which a quantity has departed by more than chance makes: once in sixteen
-    /// thousand.
-    pub(crate) const DEPARTED: f64 = 4.0;
+    pub(crate) use jointscope_tolerances::DEPARTED;
+
     /// Standard deviations beyond which nobody believes a quantity where lines are not explained for it: a
     /// bungee of 200 N/m was to have 11.7 kN/m, 460 deviations off, and a point mass 220.
     pub(crate) const BEYOND_BELIEF: f64 = 10.0;

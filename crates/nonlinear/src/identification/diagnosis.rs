@@ -1,17 +1,15 @@
 //! The whole answer: does anything change with amplitude, what is it, where, how strong, how sure.
 
-use super::fit::Fit;
 use super::homogeneity::{Homogeneity, homogeneity};
 use super::hypothesis::Hypothesis;
-use super::judge::{HitFinding, Judged, Judgement, ModelFit, Step};
+use super::judge::{HitFinding, Judged, Judgement, ModelFit};
+use super::laws::Laws;
 use super::locations::{JointLocation, locations};
-use super::needed::needed;
 use super::records::{Record, held_out, records};
-use super::search::{Search, Span};
+use super::search::Search;
 use crate::settings::band::{BEYOND_BAND, BEYOND_ELASTIC, FORCE_ENDS, SAMPLING_ENDS};
 use crate::settings::homogeneity::CHANGED;
 use crate::settings::map::{FROM_LOWEST, HARMONIC, SAMPLED_SHARE};
-use crate::settings::search::{LEAST_GAIN, SEEK_MORE, SEEK_MORE_ERROR, WORTH};
 use crate::spectra::Compared;
 use crate::{DiagnoseError, ForceStateError, ForceStateMap, SimulationError};
 use jointscope_findings::{HeldOut, Verdict};
@@ -124,60 +122,7 @@ fn judged(fixture: &Fixture, all: &[Record], (lines, elastic): Bands, exact: boo
     let points: Vec<String> = channels.map(|channel| channel.point.clone()).collect();
     let nominal = Hypothesis::nominal(fixture, exact, &points);
     let refitted = search.refitted(&nominal)?;
-    let mut steps: Vec<Step> = Vec::new();
-    let mut best = refitted.clone();
-    let mut span = Span::default();
-    let mut whole = search.view(&span);
-    for worth in WORTH {
-        let enough = || {
-            best.chi2 / whole.degrees() < SEEK_MORE
-                || whole.nrmse(&best.hypothesis).is_none_or(|e| e < SEEK_MORE_ERROR)
-        };
-        if !steps.is_empty() && enough() {
-            break;
-        }
-        // From quantities that hold what is left out no law may be seen; from the stated ones none where these
-        // are wrong.
-        let bases = match steps.is_empty() {
-            true if best.hypothesis.has_departed() => vec![nominal.clone(), best.hypothesis.clone()],
-            true => vec![nominal.clone()],
-            false => vec![best.hypothesis.clone()],
-        };
-        let mut is_found = false;
-        for base in bases {
-            let model = base.to_fixture().unwrap_or_else(|_| fixture.clone());
-            let (fits, followed) = search.hypotheses(&model, &base);
-            if fits.is_empty() {
-                continue;
-            }
-            // What is not followed counts for neither.
-            whole = search.view(&followed);
-            let mut before = Fit::of(&whole, &best.hypothesis, 1)?;
-            let (fits, freed) = search.acting(&whole, fits);
-            if let Some(freed) = freed.filter(|freed| freed.objective < before.objective) {
-                if let Some(step) = steps.last_mut() {
-                    step.gain += before.objective - freed.objective;
-                    step.fits.iter_mut().take(1).for_each(|fit| *fit = freed.clone());
-                }
-                best = freed.clone();
-                before = freed;
-            }
-            let excess = |fit: &Fit| (fit.objective - whole.degrees()).max(0.0);
-            let is_worth_it = |first: &&Fit| {
-                excess(first) <= (1.0 - worth) * excess(&before)
-                    && first.objective + LEAST_GAIN <= before.objective
-            };
-            if let Some(first) = fits.first().filter(is_worth_it).cloned() {
-                steps.push(Step { gain: before.objective - first.objective, fits });
-                (best, span, is_found) = (first, followed, true);
-                break;
-            }
-        }
-        if !is_found {
-            break;
-        }
-    }
-    let (best, steps) = needed(&search.view(&span), best, steps)?;
+    let Laws { best, steps, span, .. } = Laws::found(&search, fixture, &nominal, &refitted)?;
     let judgement = Judgement { all, held: &held, search: &search, span: &span };
     judgement.of([&nominal, &refitted.hypothesis], &best, &steps)
 }

@@ -3,12 +3,11 @@
 
 use crate::RestoringLaw;
 use crate::settings::fit::{LONGEST, LONGEST_OF_EFFECT};
-use crate::settings::judgement::DEPARTED;
 use jointscope_fixture::{
     Effect, Fixture, FixtureError, NamedQuantity, Nature, Quantity, QuantityOwner, SupportPlace,
 };
 use jointscope_inference::{Parameter, Transform};
-use jointscope_tolerances::{Tolerance, moved};
+use jointscope_tolerances::{DEPARTED, Tolerance, moved};
 use std::sync::Arc;
 
 /// A fixture with quantities and effects to be fitted, at coordinates in units of which one is a typical
@@ -75,7 +74,7 @@ impl Hypothesis {
 
     /// The same without the effect that was added last.
     pub(crate) fn without_last(&self) -> Self {
-        self.without(self.effects.len().wrapping_sub(1))
+        self.without(self.effects.len().saturating_sub(1))
     }
 
     /// The effects at the present coordinates.

@@ -6,6 +6,7 @@ pub(crate) mod homogeneity;
 mod horizon;
 mod hypothesis;
 pub(crate) mod judge;
+mod laws;
 mod locations;
 pub(crate) mod misfit;
 mod needed;
