@@ -65,6 +65,7 @@ check "the finite-element twin with CalculiX" "ccx" "$python" "$here/fem_with_ca
 check "the diagnosis of lumped structures by NumPy" "numpy scipy pyuff" "$python" "$here/lumped_with_numpy.py" "$program" --cases $([ "$long" ] && echo 60 || echo 10)
 check "slips of a test by NumPy" "numpy scipy pyuff" "$python" "$here/slips_with_numpy.py" "$program" --cases $([ "$long" ] && echo 12 || echo 3)
 check "blows by SciPy" "numpy scipy pyuff" "$python" "$here/blows_with_scipy.py" "$program" --cases $([ "$long" ] && echo 12 || echo 3)
+check "laws beside faults by NumPy" "numpy scipy pyuff" "$python" "$here/laws_with_numpy.py" "$program" $([ "$long" ] || echo --only null law)
 check "joints by NumPy" "numpy scipy pyuff" "$python" "$here/joints_with_numpy.py" "$program" --runs $([ "$long" ] && echo 40 || echo 12)
 check "joints compared by NumPy" "numpy scipy pyuff" "$python" "$here/compare_with_numpy.py" "$program" --blocks $([ "$long" ] && echo 200 || echo 12)
 if [ "$long" ]; then
