@@ -357,6 +357,15 @@ impl Hypothesis {
         Some(effects)
     }
 
+    /// Whether channels' signals are told by gains and delays alone, and no filter turns their phases.
+    pub(crate) fn filters_nothing(&self) -> bool {
+        use EffectKind::{ChannelDelay, ChannelGain};
+        let passes = |effect: &Effect| {
+            effect.kind.spec().entry != Entry::Signal || matches!(effect.kind, ChannelDelay | ChannelGain)
+        };
+        self.effects.iter().all(|(effect, _)| passes(effect)) && self.fixture.physics().iter().all(passes)
+    }
+
     /// Whether its effects, springs and masses all, make other modes than the fixture's own.
     pub(crate) fn has_other_modes(&self) -> bool {
         self.without_dashpots().is_some_and(|effects| effects.iter().any(|effect| changes_modes(effect.kind)))

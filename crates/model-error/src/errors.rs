@@ -154,6 +154,8 @@ pub struct SharedFeatures {
     distributed: Vec<(usize, f64)>,
     /// The same if it were structural and not viscous, or the reverse.
     structural: Vec<(usize, f64)>,
+    /// Whether the structure's damping is taken to turn no shape, however the model distributes it.
+    in_phase: bool,
     /// Place of the first residue among the compared features.
     pub(crate) first_residue: usize,
     /// By kind, the covariance for a size of one.
@@ -300,6 +302,7 @@ impl SharedFeatures {
             turned,
             distributed: Vec::new(),
             structural: of_structural_damping(recorded, (pairing, modelled), &own_damping),
+            in_phase: false,
             own_damping,
             first_residue: 2 * matched,
             kinds,
@@ -327,6 +330,30 @@ impl SharedFeatures {
         }
         self.kinds[DAMPING] = of_damping(self.count(), frfs, &self.turned, &self.own_damping);
         self
+    }
+
+    /// Whether damping whose distribution is in question turns a residue by more than its noise.
+    pub fn turns_phases(&self) -> bool {
+        let n = self.count();
+        self.distributed.iter().any(|&(place, part)| part * part > self.noise[place * (n + 1)])
+    }
+
+    /// The same where the structure's damping turns no shape, whatever the model's does. As one unknown
+    /// ([`SharedFeatures::with_damping_distributed_otherwise`]) that is said of the shapes where a fit sets out:
+    /// on the way it turns others, and comes to rest where the model turns none, which may be where an effect is
+    /// nothing.
+    pub fn with_shapes_in_phase(mut self) -> Self {
+        let frfs = self.turned.len() / self.own_damping.len().max(1);
+        self.distributed.clear();
+        self.turned.fill(0.0);
+        self.kinds[DAMPING] = of_damping(self.count(), frfs, &self.turned, &self.own_damping);
+        self.in_phase = true;
+        self
+    }
+
+    /// Whether the structure's damping is taken to turn no shape.
+    pub fn is_in_phase(&self) -> bool {
+        self.in_phase
     }
 
     /// The same where the structure's damping is distributed as the model has it, and of its law.
@@ -380,7 +407,9 @@ impl SharedFeatures {
             let residue = |frf: usize| {
                 let offset =
                     recorded.offsets.as_ref().map(|own| own.residues[r][frf] * modelled.signals[m][frf]);
-                modelled.modes[m].residues[frf] + modelled.leaks[frf][r] + offset.unwrap_or_default()
+                let (own, signal) = (modelled.modes[m].residues[frf], modelled.signals[m][frf]);
+                let own = if self.in_phase { signal * (own / signal).re } else { own };
+                own + modelled.leaks[frf][r] + offset.unwrap_or_default()
             };
             model.extend((0..frfs).map(residue).flat_map(|a| [a.re / scale, a.im / scale]));
         }

@@ -8,9 +8,10 @@ pub(crate) use modal_fit::ModalFit;
 use crate::Hypothesis;
 use crate::modal::prior::Prior;
 use crate::modal::problem::{Iterate, PairedModes, Problem};
+use crate::settings::modal::fit::AS_GOOD_AS_NONE;
 use in_turn::{InTurn, Start};
 use jointscope_model_error::{ErrorSizes, Pairing};
-use modal_fit::more_probable;
+use modal_fit::{more_probable, one_of_two};
 
 /// The sizes of error that a fit sets out with. One that begins with errors too small follows whatever
 /// features are recorded most sharply, and its errors then grow to suit it; one that begins with large ones
@@ -56,7 +57,25 @@ impl Problem<'_> {
     /// [`Problem::fitted`] from a start whose modes are `paired` already, with derivatives known from nearby
     /// where there are any. What stays below `least` in ln p is not followed to its rest, nor from other
     /// sizes of error.
+    ///
+    /// Where the model's damping would turn shapes, it is as probable that the structure's turns none.
     pub(crate) fn fitted_from(
+        &self,
+        start: &Hypothesis,
+        paired: PairedModes,
+        priors: &[Prior],
+        (nearby, set_out, least): (Option<Vec<Vec<f64>>>, SetOut, f64),
+    ) -> Option<ModalFit> {
+        if !(paired.comparison.turns_phases() && start.filters_nothing()) {
+            return self.fitted_as(start, paired, priors, (nearby, set_out, least));
+        }
+        let in_phase = self.fitted_as(start, paired.clone().in_phase(), priors, (None, set_out, least));
+        let least = in_phase.as_ref().map_or(least, |fit| least.max(fit.ln - AS_GOOD_AS_NONE));
+        one_of_two(in_phase, self.fitted_as(start, paired, priors, (nearby, set_out, least)))
+    }
+
+    /// The same with the structure's damping as these modes are `paired` with it.
+    fn fitted_as(
         &self,
         start: &Hypothesis,
         paired: PairedModes,

@@ -31,6 +31,13 @@ pub(crate) struct PairedModes {
     pub comparison: SharedFeatures,
 }
 
+impl PairedModes {
+    /// The same where the structure's damping turns no shape.
+    pub(super) fn in_phase(self) -> Self {
+        PairedModes { comparison: self.comparison.with_shapes_in_phase(), ..self }
+    }
+}
+
 /// One iterate of a fit: the hypothesis, its modes and what they leave.
 #[derive(Clone)]
 pub(super) struct Iterate {

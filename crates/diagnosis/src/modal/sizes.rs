@@ -182,6 +182,10 @@ impl Problem<'_> {
     /// Whether every mode has a partner and errors of the model gain less than this in ln p: among them
     /// another distribution of its damping, where no effect makes its own of that.
     pub(crate) fn is_exact(&self, fit: &ModalFit, gain: f64) -> bool {
+        // The model's damping turns shapes, the structure's none: that is an error.
+        if fit.paired.comparison.is_in_phase() {
+            return false;
+        }
         let least = self.sizes.times(ErrorSizes::LEAST);
         let comparison = &fit.paired.comparison;
         let without = || match fit.hypothesis.has_other_modes() {

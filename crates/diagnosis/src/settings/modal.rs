@@ -103,6 +103,8 @@ pub(crate) mod fit {
     /// How often a mode that has strayed into the band or out of it is counted anew, and damping that turns
     /// phases by far more or less than before: a mode at the very end of the band may stray for ever.
     pub(crate) const MOST_STRAYS: usize = 2;
+    /// Difference in ln p below which a fit adds next to nothing to another one.
+    pub(crate) const AS_GOOD_AS_NONE: f64 = 4.0;
     /// Standard deviations by which χ² of the features may be larger than their number.
     pub(crate) const BY_CHANCE: f64 = 6.0;
 }

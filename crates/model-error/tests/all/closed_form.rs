@@ -235,6 +235,35 @@ fn an_error_of_the_damping_is_one_of_ratios_and_of_what_is_in_quadrature() {
 }
 
 #[test]
+fn a_model_whose_damping_turns_no_shape_is_in_phase_with_itself_undamped() {
+    let dashpot = r#"{"kind": "support", "place": "A", "x": 0, "stiffness": 2e6, "damping": 100}"#;
+    let pairs = pairs(&[("1", "1"), ("2", "1")]);
+    let of = |fixture: &Fixture| {
+        let recorded = Recorded::of(fixture, &pairs, &lines(600.0), noise(None)).modes();
+        let compared = Compared::of(fixture, recorded);
+        let shapes = Shapes::of(fixture, &compared.recorded, &compared.modelled.poles()).unwrap();
+        let Compared { recorded, pairing, comparison, .. } = &compared;
+        let in_question = comparison.clone().with_damping_distributed_otherwise(recorded, pairing, &shapes);
+        (in_question, compared)
+    };
+    let (in_question, compared) = of(&two_masses(1e-3, dashpot));
+    assert!(in_question.turns_phases() && !of(&two_masses(1e-3, "")).0.turns_phases());
+    let in_phase = in_question.clone().with_shapes_in_phase();
+    assert!(in_phase.is_in_phase() && !in_phase.turns_phases());
+    let features = compared.recorded.features();
+    let left = |comparison: &SharedFeatures| {
+        let all = comparison.residual(&compared.recorded, &features, &compared.modelled, &compared.pairing);
+        // Behind two frequencies and two ratios, two modes in two FRFs: real part, imaginary part.
+        all[4..12].iter().skip(1).step_by(2).copied().collect::<Vec<_>>()
+    };
+    let recorded = features[4..12].iter().skip(1).step_by(2);
+    for ((as_modelled, in_phase), recorded) in left(&in_question).iter().zip(left(&in_phase)).zip(recorded) {
+        assert!(as_modelled.abs() < 1e-9 && recorded.abs() > 1e-4, "{as_modelled:e}, recorded {recorded:e}");
+        assert!((in_phase - recorded).abs() < 1e-9, "{in_phase:e} of {recorded:e} is left");
+    }
+}
+
+#[test]
 fn structural_damping_turns_the_residues_of_a_viscous_mode_by_its_own_damping_ratio() {
     // What a window adds, three times what the mode has by itself, turns nothing and is not in error.
     for window in [0.0, 0.03 * natural()] {

@@ -141,6 +141,8 @@ impl<'a> InTurn<'a> {
     /// The same point with its modes paired anew; `None` where that changes nothing and the fit `ends`.
     fn paired_anew(&mut self, point: Iterate, ends: bool, strays: bool) -> Option<Start> {
         let anew = self.problem.paired_modes(&point.hypothesis)?;
+        let in_phase = self.paired.comparison.is_in_phase();
+        let anew = if in_phase { anew.in_phase() } else { anew };
         let alike = anew.pairing.pairs == self.paired.pairing.pairs;
         // Where the fit set out, damping may have turned the shapes' phases by far more or less than it does
         // here.

@@ -74,3 +74,13 @@ impl ModalFit {
 pub(super) fn more_probable(a: Option<ModalFit>, b: Option<ModalFit>) -> Option<ModalFit> {
     a.into_iter().chain(b).reduce(|best, fit| if fit.ln > best.ln { fit } else { best })
 }
+
+/// What two fits come to of which one or the other is so, each as probable beforehand: the more probable one,
+/// with the probability of either.
+pub(super) fn one_of_two(a: Option<ModalFit>, b: Option<ModalFit>) -> Option<ModalFit> {
+    let lns = [&a, &b].map(|fit| fit.as_ref().map_or(f64::NEG_INFINITY, |fit| fit.ln));
+    let mut best = more_probable(a, b)?;
+    let less = lns[0].min(lns[1]);
+    best.ln += (0.5 * (1.0 + (less - best.ln).exp())).ln();
+    Some(best)
+}
