@@ -15,6 +15,7 @@
 //! * [`problem`]: the modes of a hypothesis, paired with the recorded ones;
 //! * [`descent`]: its parameters fitted at given sizes of error;
 //! * [`fit`]: one hypothesis at its most probable parameters and sizes of error;
+//! * [`errors_on_lines`]: what errors of modes make of the lines;
 //! * [`evidence`]: how probable it makes what was recorded;
 //! * [`turns`]: how its sizes of error go on from round to round;
 //! * [`prior`]: what is known of parameters beforehand;
@@ -42,6 +43,7 @@ mod changes;
 mod compared;
 mod descent;
 mod elsewhere;
+mod errors_on_lines;
 mod every_joint;
 mod evidence;
 mod extended;

@@ -5,7 +5,7 @@ use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::held_out::{Division, JUDGEMENT_STEP};
 use crate::location::{LOCATION_STEP, Location, located};
-use crate::modal::{Known, ModalJudgement};
+use crate::modal::{Known, ModalJudgement, ModelError};
 use crate::search::Search;
 use crate::settings::modal::judgement::AS_WELL_WITHOUT;
 use crate::settings::work::shares::OF_HELD_OUT;
@@ -56,7 +56,7 @@ fn telling_of_lines(fitter: &Fitter, on_lines: &Search, modal: &ModalJudgement) 
     if modal.since_baseline {
         return (modal, search);
     }
-    while let Some(index) = idlest(fitter, &search.repaired) {
+    while let Some(index) = idlest(fitter, &search.repaired, &modal.errors[1]) {
         let mut needed = search.repaired.hypothesis.effects();
         needed.remove(index);
         (modal, search) = match modal.among(fitter, &on_lines.nominal.hypothesis, &needed) {
@@ -70,13 +70,15 @@ fn telling_of_lines(fitter: &Fitter, on_lines: &Search, modal: &ModalJudgement) 
     (modal, search)
 }
 
-/// The effect of a model, by its index, that its lines miss least, where they are met as well without it.
-fn idlest(fitter: &Fitter, repaired: &Fit) -> Option<usize> {
+/// The effect of a model, by its index, that its lines miss least, where they are met as well without it, beside
+/// what `errors` of its modes make of them.
+fn idlest(fitter: &Fitter, repaired: &Fit, errors: &ModelError) -> Option<usize> {
+    let observation = errors.beside_noise(fitter.observation, &repaired.predicted);
     let hypothesis = &repaired.hypothesis;
-    let without = |index: usize| Some((index, Fit::at(hypothesis.without(index), fitter.observation)?.chi2));
+    let without = |index: usize| Some((index, Fit::at(hypothesis.without(index), &observation)?.chi2));
     let missed = (0..hypothesis.effect_count()).filter_map(without);
     let (index, chi2) = missed.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (chi2 < AS_WELL_WITHOUT * repaired.chi2).then_some(index)
+    (chi2 < AS_WELL_WITHOUT * observation.chi2(&repaired.predicted)).then_some(index)
 }
 
 /// How well what modes tell of the recording without what is held out predicts that. `search` is what was
@@ -119,13 +121,14 @@ mod tests {
     use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
     use jointscope_spectra::{FrfPair, SpectralLines};
 
+    const BLOCKS: &str = r#"{ "bodies": { "A": { "mass": 1.1, "inertia": 9.5e-4, "x_cg": -0.03 }, "B": { "mass": 1.2, "inertia": 9.9e-4, "x_cg": 0.095 } },
+         "points": { "1": { "body": "A", "x": -0.06 }, "2": { "body": "A", "x": 0 }, "3": { "body": "B", "x": 0.065 }, "4": { "body": "B", "x": 0.125 } },
+         "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 } } },
+         "damping": { "modal_ratios": [0.004, 0.006] } }"#;
+
     #[test]
     fn a_name_without_which_lines_are_met_as_well_is_idle() {
-        let text = r#"{ "bodies": { "A": { "mass": 1.1, "inertia": 9.5e-4, "x_cg": -0.03 }, "B": { "mass": 1.2, "inertia": 9.9e-4, "x_cg": 0.095 } },
-             "points": { "1": { "body": "A", "x": -0.06 }, "2": { "body": "A", "x": 0 }, "3": { "body": "B", "x": 0.065 }, "4": { "body": "B", "x": 0.125 } },
-             "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 } } },
-             "damping": { "modal_ratios": [0.004, 0.006] } }"#;
-        let fixture = Fixture::from_json(text).unwrap();
+        let fixture = Fixture::from_json(BLOCKS).unwrap();
         let mass = |grams: f64| {
             Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.1, 1e-3 * grams])
         };
@@ -145,7 +148,32 @@ mod tests {
             (vec![gain(1.3), mass(18.0)], Some(0)),
         ] {
             let with = effects.iter().fold(nominal.clone(), |rest, effect| rest.with(effect.clone()));
-            assert_eq!(idlest(&fitter, &Fit::at(with, &observation).unwrap()), expected, "{effects:?}");
+            let repaired = Fit::at(with, &observation).unwrap();
+            assert_eq!(idlest(&fitter, &repaired, &ModelError::default()), expected, "{effects:?}");
         }
+    }
+
+    #[test]
+    fn a_gain_is_not_idle_because_peaks_of_a_wrong_model_miss_each_other() {
+        // The smaller a peak is that misses another one, the nearer the two are.
+        let fixture =
+            |modulus: f64| Fixture::from_json(&BLOCKS.replace("2.07e11", &format!("{modulus}"))).unwrap();
+        let gain = Effect::new(EffectKind::ChannelGain, Place::Response("4".into()), None, &[1.08]);
+        let pairs = [FrfPair::transverse("3", "1"), FrfPair::transverse("4", "1")];
+        let lines = SpectralLines::even(20.0, 1.0, 950).unwrap();
+        let truth = fixture(2.07e11).with_physics(vec![gain.clone()]).unwrap();
+        let observation = simulated(&truth, &pairs, &lines, 1e-6);
+        let settings = Settings::default();
+        let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
+        // Natural frequencies are off by a per cent.
+        let wrong = Hypothesis::nominal(&fixture(2.028e11), false);
+        let idlest_of = |effect: Effect, error: f64| {
+            let errors = ModelError { frequency: error, residue: 0.5 * error, ..ModelError::default() };
+            idlest(&fitter, &Fit::at(wrong.with(effect), &observation).unwrap(), &errors)
+        };
+        assert_eq!(idlest_of(gain.clone(), 0.0), Some(0), "by their noise lines are nearer without it");
+        assert_eq!(idlest_of(gain, 0.01), None);
+        let nothing = Effect::new(EffectKind::ChannelGain, Place::Response("4".into()), None, &[1.0 + 1e-5]);
+        assert_eq!(idlest_of(nothing, 0.01), Some(0));
     }
 }
