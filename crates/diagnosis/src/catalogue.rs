@@ -11,7 +11,7 @@ use crate::together::inverts;
 use crate::{Hypothesis, Observation, Tolerance};
 use jointscope_fixture::{
     BodyKind, Dof, Effect, EffectKind, EffectSpec, Entry, Fixture, Joint, JointLaw, Measure, NamedQuantity,
-    Place, PlaceKind, QuantityKey, QuantityOwner, Starts,
+    Place, PlaceKind, QuantityKey, QuantityOwner, Starts, SupportPlace,
 };
 use jointscope_lumped::nominal_stiffness;
 use std::f64::consts::TAU;
@@ -412,6 +412,24 @@ impl Surroundings<'_> {
         }
     }
 
+    /// The stiffest of the joints and supports of bodies that do not turn, N/m; nothing of others. What holds
+    /// a storey is of the kind of what holds the storeys to each other, wherever the middle of the band lies.
+    fn stiffest_beside_storeys(&self) -> f64 {
+        let fixture = self.fixture;
+        let is_storey = |body: usize| [self.body, self.second].contains(&Some(body)) && !turns(fixture, body);
+        let body_of = |point: usize| fixture.points()[point].body;
+        let joints = fixture
+            .joints()
+            .iter()
+            .filter(|joint| is_storey(body_of(joint.from)) || is_storey(body_of(joint.to)));
+        let joints = joints.map(|joint| nominal_stiffness(&joint.law, fixture.joint_length(joint)).at(0, 0));
+        let supports = fixture.supports().iter().filter(|support| match support.place {
+            SupportPlace::Point(point) => is_storey(body_of(point)),
+            SupportPlace::Body { body, .. } => is_storey(body),
+        });
+        joints.chain(supports.map(|support| support.stiffness.value)).fold(0.0, f64::max)
+    }
+
     fn measure(&self, measure: Measure) -> Option<f64> {
         let mass = |body: usize| self.fixture.bodies()[body].kind.mass();
         let point = |point: usize| &self.fixture.points()[point];
@@ -432,7 +450,8 @@ impl Surroundings<'_> {
                     Some(Dof::Rotation) => inertia_of(self.fixture, body),
                     _ => self.second.map_or(mass(body), |second| mass(body).min(mass(second))),
                 };
-                self.body.map(|body| own(body) * middle * middle)
+                let inertial = self.body.map(|body| own(body) * middle * middle)?;
+                Some(inertial.max(self.stiffest_beside_storeys()))
             }
             Measure::LowestLine => Some(self.observation.lines().hz()[0]),
             Measure::LighterBody => {

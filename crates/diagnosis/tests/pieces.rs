@@ -177,6 +177,31 @@ fn what_a_fixture_states_of_a_joint_is_not_among_what_it_leaves_out() {
 }
 
 #[test]
+fn what_touches_a_storey_may_be_as_stiff_as_what_holds_it() {
+    // Storeys of 7 kg, tested to 120 Hz, are held far more stiffly than they would resonate on in mid-band.
+    let fixture = Fixture::from_json(
+        r#"{ "bodies": { "F1": { "mass": 7.0, "rotates": false }, "F2": { "mass": 7.0, "rotates": false } },
+             "points": { "1": { "body": "F1", "x": 0 }, "2": { "body": "F2", "x": 0.2 } },
+             "joints": { "C": { "from": "1", "to": "2", "stiffness": [[4e5, 0], [0, 0]] } },
+             "supports": { "ground": { "point": "1", "stiffness": 3e5 } },
+             "damping": { "modal_ratios": [0.003] } }"#,
+    )
+    .unwrap();
+    let lines = SpectralLines::even(4.0, 0.5, 233).unwrap();
+    let pairs = [FrfPair::transverse("1", "1"), FrfPair::transverse("2", "1")];
+    let frfs = synthesize(&fixture, &pairs, &lines, Instrument::AsRecorded).unwrap();
+    let all = catalogue(&fixture, &Observation::new(&frfs, |_| true).unwrap());
+    let of = |body: &str| {
+        let own = Place::Body(body.into());
+        all.iter().find(|c| c.kind == EffectKind::Support && c.place == own && c.dof != Some(Dof::Rotation))
+    };
+    for body in ["F1", "F2"] {
+        let stiffest = of(body).unwrap().starts.iter().map(|start| start[1]).fold(0.0, f64::max);
+        assert!((1e5..8e5).contains(&stiffest), "{body}: up to {stiffest} N/m");
+    }
+}
+
+#[test]
 fn what_resonates_between_two_starts_is_within_the_reach_of_one() {
     // Lines whose lowest is less than a fiftieth of the highest: no band has starts farther apart.
     let observation = observation(&fixture());
