@@ -10,16 +10,9 @@ use crate::modal::search::ModalSearch;
 use crate::modal::searcher::{Named, Searcher};
 use crate::settings::modal::sizes::STANDING_SHAPE;
 use jointscope_findings::Verdict;
-use jointscope_fixture::Entry;
 
 fn squares(sizes: &[f64]) -> f64 {
     sizes.iter().map(|size| size * size).sum()
-}
-
-/// Whether all that a fit adds to the fixture are factors on channels' signals.
-fn is_of_signals(fit: &ModalFit) -> bool {
-    let effects = fit.hypothesis.effects();
-    !effects.is_empty() && effects.iter().all(|effect| effect.kind.spec().entry == Entry::Signal)
 }
 
 /// A comparison by modes that is to be judged.
@@ -97,7 +90,7 @@ impl Judge<'_> {
         let part = self.searcher.settings.part;
         let in_part = || {
             model(&best.fit) < part * model(none)
-                || is_of_signals(&best.fit) && !self.made_up_for_by_signals(&best.fit).is_empty()
+                || best.fit.is_of_signals() && !self.made_up_for_by_signals(&best.fit).is_empty()
                 || all(&best.fit) < part * all(none)
                 || modes(&best.fit) < part * modes(none) && model(&best.fit) < model(none)
         };
@@ -189,7 +182,7 @@ impl Judge<'_> {
     fn unlisted(&self, best: &ModalFit) -> f64 {
         let (usual, most) = self.searcher.settings.unlisted;
         let problem = &self.searcher.problem;
-        let sizes = match is_of_signals(best) {
+        let sizes = match best.is_of_signals() {
             true => self.made_up_for_by_signals(best),
             false => problem.relative_sizes_as_stated(best, STANDING_SHAPE),
         };

@@ -17,7 +17,7 @@ use crate::modal::problem::{Iterate, Problem};
 use crate::search::Search;
 use crate::settings::ModalSettings;
 use crate::settings::effects::quantities::DEPARTED;
-use crate::settings::modal::judgement::{BOUGHT, NO_MODEL, NO_PEAK};
+use crate::settings::modal::judgement::{BOUGHT, LEAST_MET, NO_MODEL, NO_PEAK};
 use crate::work::Work;
 use crate::{Hypothesis, Observation};
 use jointscope_findings::Verdict;
@@ -36,7 +36,10 @@ impl ModalJudgement {
         let search = self.no_farther(fitter.observation, search);
         let departs = |fit: &ModalFit| fit.largest_departure() > settings.adequate.1;
         let bought = departs(&self.search.none) && !departs(&self.search.best.fit);
-        let misses = search.repaired.chi2 >= settings.part * search.refitted.chi2 && !bought;
+        // Factors on channels' signals leave natural frequencies as they are: peaks that miss each other by
+        // these say nothing of a gain.
+        let is_asked = !bought && !self.search.best.fit.is_of_signals();
+        let misses = is_asked && search.repaired.chi2 >= settings.part * search.refitted.chi2;
         let is_none = match self.verdict {
             Verdict::PartlyExplained => misses,
             Verdict::Explained => self.spoils_lines(fitter, &search, if bought { BOUGHT } else { 1.0 }),
@@ -75,10 +78,14 @@ impl ModalJudgement {
         leaves && !self.since_baseline && (self.is_incomplete_but_usable(fitter) || self.has_no_peak())
     }
 
-    /// Whether what explains the modes predicts lines no better than zeros do: a mode that it takes out of the
-    /// band is missed by no mode, and by every line.
+    /// Whether what explains the modes predicts lines no better than zeros do, and not because its peaks are as
+    /// far off as errors of its frequencies take them: a mode that it takes out of the band is missed by no mode,
+    /// and by every line.
     fn tells_nothing_of_lines(&self, fitter: &Fitter, search: &Search) -> bool {
-        !self.since_baseline && fitter.observation.nrmse(&search.repaired.predicted) > NO_MODEL
+        let (observation, predicted) = (fitter.observation, &search.repaired.predicted);
+        !self.since_baseline
+            && observation.nrmse(predicted) > NO_MODEL
+            && self.errors[1].squares_met(observation, predicted) < LEAST_MET
     }
 
     /// Whether something is recorded beside the modes of the model that is as wide as no mode of a structure.

@@ -73,12 +73,13 @@ fn telling_of_lines(fitter: &Fitter, on_lines: &Search, modal: &ModalJudgement) 
 /// The effect of a model, by its index, that its lines miss least, where they are met as well without it, beside
 /// what `errors` of its modes make of them.
 fn idlest(fitter: &Fitter, repaired: &Fit, errors: &ModelError) -> Option<usize> {
-    let observation = errors.beside_noise(fitter.observation, &repaired.predicted);
     let hypothesis = &repaired.hypothesis;
-    let without = |index: usize| Some((index, Fit::at(hypothesis.without(index), &observation)?.chi2));
+    let chi2 = |fit: &Fit| errors.chi2_beside_noise(fitter.observation, &repaired.predicted, &fit.predicted);
+    let without =
+        |index: usize| Some((index, chi2(&Fit::at(hypothesis.without(index), fitter.observation)?)));
     let missed = (0..hypothesis.effect_count()).filter_map(without);
-    let (index, chi2) = missed.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (chi2 < AS_WELL_WITHOUT * observation.chi2(&repaired.predicted)).then_some(index)
+    let (index, without) = missed.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (without < AS_WELL_WITHOUT * chi2(repaired)).then_some(index)
 }
 
 /// How well what modes tell of the recording without what is held out predicts that. `search` is what was

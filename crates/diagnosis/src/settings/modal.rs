@@ -172,6 +172,9 @@ pub(crate) mod judgement {
     /// explains the modes had at most 0.7 where it was right, and 1.00 where a joint 25 times softer than
     /// stated was called 40 times stiffer, its mode out of the band.
     pub(crate) const NO_MODEL: f64 = 0.9;
+    /// Share of the recorded squares that must be met within twice the error of natural frequencies where the
+    /// lines themselves are missed so far.
+    pub(crate) const LEAST_MET: f64 = 0.5;
 }
 
 /// Modes of two recordings of a structure.

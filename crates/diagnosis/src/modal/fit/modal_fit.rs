@@ -4,6 +4,7 @@ use crate::Hypothesis;
 use crate::modal::prior::Prior;
 use crate::modal::problem::PairedModes;
 use crate::settings::modal::fit::BY_CHANCE;
+use jointscope_fixture::Entry;
 use jointscope_inference::{Covariance, dot};
 use jointscope_linalg::Cholesky;
 use jointscope_model_error::{ErrorSizes, Linear, ModelEvidence};
@@ -30,6 +31,12 @@ impl ModalFit {
         let departures = self.hypothesis.coordinates.iter().zip(&self.priors);
         let departures = departures.take(self.hypothesis.tolerances().len());
         departures.map(|(at, prior)| ((at - prior.mean) / prior.std).abs()).fold(0.0, f64::max)
+    }
+
+    /// Whether all that it adds to the fixture are factors on channels' signals.
+    pub(crate) fn is_of_signals(&self) -> bool {
+        let effects = self.hypothesis.effects();
+        !effects.is_empty() && effects.iter().all(|effect| effect.kind.spec().entry == Entry::Signal)
     }
 
     /// Whether the features' misfit, errors of the model at their sizes and departures counted, is no larger
