@@ -235,7 +235,7 @@ fn an_error_of_the_damping_is_one_of_ratios_and_of_what_is_in_quadrature() {
 }
 
 #[test]
-fn a_model_whose_damping_turns_no_shape_is_in_phase_with_itself_undamped() {
+fn a_model_in_phase_leaves_all_that_is_recorded_in_quadrature() {
     let dashpot = r#"{"kind": "support", "place": "A", "x": 0, "stiffness": 2e6, "damping": 100}"#;
     let pairs = pairs(&[("1", "1"), ("2", "1")]);
     let of = |fixture: &Fixture| {
@@ -258,8 +258,8 @@ fn a_model_whose_damping_turns_no_shape_is_in_phase_with_itself_undamped() {
     };
     let recorded = features[4..12].iter().skip(1).step_by(2);
     for ((as_modelled, in_phase), recorded) in left(&in_question).iter().zip(left(&in_phase)).zip(recorded) {
-        assert!(as_modelled.abs() < 1e-9 && recorded.abs() > 1e-4, "{as_modelled:e}, recorded {recorded:e}");
-        assert!((in_phase - recorded).abs() < 1e-9, "{in_phase:e} of {recorded:e} is left");
+        assert!(as_modelled.abs() < 1e-5 && recorded.abs() > 1e-4, "{as_modelled:e}, recorded {recorded:e}");
+        assert!((in_phase - recorded).abs() < 1e-5, "{in_phase:e} of {recorded:e} is left");
     }
 }
 
