@@ -11,7 +11,7 @@ use crate::together::inverts;
 use crate::{Hypothesis, Observation, Tolerance};
 use jointscope_fixture::{
     BodyKind, Dof, Effect, EffectKind, EffectSpec, Entry, Fixture, Joint, JointLaw, Measure, NamedQuantity,
-    Place, PlaceKind, QuantityKey, QuantityOwner, Starts, SupportPlace,
+    Place, PlaceKind, QuantityKey, QuantityOwner, Starts,
 };
 use jointscope_lumped::nominal_stiffness;
 use std::f64::consts::TAU;
@@ -423,10 +423,8 @@ impl Surroundings<'_> {
             .iter()
             .filter(|joint| is_storey(body_of(joint.from)) || is_storey(body_of(joint.to)));
         let joints = joints.map(|joint| nominal_stiffness(&joint.law, fixture.joint_length(joint)).at(0, 0));
-        let supports = fixture.supports().iter().filter(|support| match support.place {
-            SupportPlace::Point(point) => is_storey(body_of(point)),
-            SupportPlace::Body { body, .. } => is_storey(body),
-        });
+        let supports =
+            fixture.supports().iter().filter(|support| is_storey(fixture.support_place(support).0));
         joints.chain(supports.map(|support| support.stiffness.value)).fold(0.0, f64::max)
     }
 

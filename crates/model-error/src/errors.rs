@@ -342,13 +342,8 @@ impl SharedFeatures {
     /// ([`SharedFeatures::with_damping_distributed_otherwise`]) that is said of the shapes where a fit sets out:
     /// on the way it turns others, and comes to rest where the model turns none, which may be where an effect is
     /// nothing.
-    pub fn with_shapes_in_phase(mut self) -> Self {
-        let frfs = self.turned.len() / self.own_damping.len().max(1);
-        self.distributed.clear();
-        self.turned.fill(0.0);
-        self.kinds[DAMPING] = of_damping(self.count(), frfs, &self.turned, &self.own_damping);
-        self.in_phase = true;
-        self
+    pub fn with_shapes_in_phase(self) -> Self {
+        SharedFeatures { in_phase: true, ..self.with_ratios_alone() }
     }
 
     /// Whether the structure's damping is taken to turn no shape.

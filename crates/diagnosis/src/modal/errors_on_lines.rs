@@ -10,17 +10,36 @@ use crate::Observation;
 use crate::modal::sizes::ModelError;
 use num_complex::Complex64;
 
+/// What a recording's lines say beside their noise and what errors of a model's modes make of them.
+pub(crate) struct LinesBesideErrors<'a> {
+    observation: &'a Observation,
+    /// By value, the inverse of the covariance of its real and imaginary part: the entries of its lower
+    /// triangle. Nothing of values that do not count.
+    precisions: Vec<[f64; 3]>,
+}
+
+impl LinesBesideErrors<'_> {
+    /// χ² of modelled values.
+    pub(crate) fn chi2(&self, modelled: &[Complex64]) -> f64 {
+        let left =
+            self.observation.values().iter().zip(modelled).map(|(measured, modelled)| measured - modelled);
+        let squares = left.zip(&self.precisions).map(|(left, [re, both, im])| {
+            re * left.re * left.re + 2.0 * both * left.re * left.im + im * left.im * left.im
+        });
+        squares.sum()
+    }
+}
+
 impl ModelError {
-    /// χ² of modelled values with what these errors make of each value beside its noise, as a model tells it
-    /// that predicts the values `about`. An error of frequencies moves a value along its slope over frequency, of
-    /// what was recorded and of the model alike, for both have peaks where the other may have none; one of shapes
-    /// makes it larger or smaller. What turns its phase is neither, away from peaks.
-    pub(crate) fn chi2_beside_noise(
+    /// The lines of a recording beside what these errors make of each value, as a model tells it that predicts
+    /// the values `about`. An error of frequencies moves a value along its slope over frequency, of what was
+    /// recorded and of the model alike, for both have peaks where the other may have none; one of shapes makes it
+    /// larger or smaller. What turns its phase is neither, away from peaks.
+    pub(crate) fn beside_lines<'a>(
         &self,
-        observation: &Observation,
+        observation: &'a Observation,
         about: &[Complex64],
-        modelled: &[Complex64],
-    ) -> f64 {
+    ) -> LinesBesideErrors<'a> {
         let hz = observation.lines().hz();
         let lines = hz.len();
         let slope = |values: &[Complex64], at: usize| {
@@ -29,23 +48,22 @@ impl ModelError {
             let change = values[first + to] - values[first + from];
             if to > from { change / (hz[to] / hz[from]).ln() } else { Complex64::ZERO }
         };
-        let measured = observation.values();
-        let square = |(at, weight): (usize, &f64)| {
+        let precision = |(at, weight): (usize, &f64)| {
             if *weight == 0.0 {
-                return 0.0;
+                return [0.0; 3];
             }
-            let errors = [measured, about].map(|of| [self.frequency * slope(of, at), self.residue * of[at]]);
-            // Covariance of real and imaginary part, that of the noise being the inverse of the weight.
+            let moved = |of: &[Complex64]| [self.frequency * slope(of, at), self.residue * of[at]];
+            // The noise of either part has the inverse of the weight for its variance.
             let mut covariance = [weight.recip(), 0.0, weight.recip()];
-            for error in errors.as_flattened() {
+            for error in [observation.values(), about].map(moved).as_flattened() {
                 let share = [error.re * error.re, error.re * error.im, error.im * error.im];
                 covariance.iter_mut().zip(share).for_each(|(sum, part)| *sum += 0.5 * part);
             }
-            let [a, b, d] = covariance;
-            let left = measured[at] - modelled[at];
-            (d * left.re * left.re - 2.0 * b * left.re * left.im + a * left.im * left.im) / (a * d - b * b)
+            let [re, both, im] = covariance;
+            [im, -both, re].map(|entry| entry / (re * im - both * both))
         };
-        observation.weights().iter().enumerate().map(square).sum()
+        let precisions = observation.weights().iter().enumerate().map(precision).collect();
+        LinesBesideErrors { observation, precisions }
     }
 
     /// The share of the recorded squares that is met by modelled ones within twice the error of natural
@@ -109,7 +127,7 @@ mod tests {
         let values = observation.values().to_vec();
         let times = |factor: Complex64| values.iter().map(|value| factor * value).collect::<Vec<_>>();
         let chi2 = |errors: &ModelError, modelled: &[Complex64]| {
-            errors.chi2_beside_noise(&observation, &values, modelled)
+            errors.beside_lines(&observation, &values).chi2(modelled)
         };
         let none = ModelError::default();
         let of_shapes = ModelError { residue: 0.005, ..none };

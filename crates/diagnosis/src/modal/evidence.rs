@@ -5,6 +5,12 @@ use crate::modal::prior::Prior;
 use crate::modal::problem::{Iterate, Problem};
 use jointscope_model_error::{ErrorSizes, Linear, ModelEvidence, SharedFeatures};
 
+/// ln of the mean of two densities by their logarithms: of what is one or the other, each as probable
+/// beforehand.
+pub(super) fn ln_of_mean(a: f64, b: f64) -> f64 {
+    a.max(b) + (0.5 * (1.0 + (-(a - b).abs()).exp())).ln()
+}
+
 impl Problem<'_> {
     /// The linear model at a point and its evidence. Whether an effect's spring is damped beyond the
     /// fixture's damping nobody knows beforehand: it is as probable that it is not, and what has no dashpot
@@ -24,11 +30,10 @@ impl Problem<'_> {
         let mut elastic = priors.to_vec();
         dashpots.iter().for_each(|&index| elastic[index] = Prior { mean: 0.0, std: 0.0 });
         let (_, elastic) = self.evidence_within_bounds(point, &elastic, slopes, at)?;
-        let mean = |a: f64, b: f64| a.max(b) + (0.5 * (1.0 + (-(a - b).abs()).exp())).ln();
         let likelier = if elastic.ln > damped.ln { elastic } else { damped };
         let evidence = ModelEvidence {
-            ln: mean(damped.ln, elastic.ln),
-            ln_at_start: mean(damped.ln_at_start, elastic.ln_at_start),
+            ln: ln_of_mean(damped.ln, elastic.ln),
+            ln_at_start: ln_of_mean(damped.ln_at_start, elastic.ln_at_start),
             sizes: likelier.sizes,
         };
         Some((linear, evidence))

@@ -74,7 +74,8 @@ fn telling_of_lines(fitter: &Fitter, on_lines: &Search, modal: &ModalJudgement) 
 /// what `errors` of its modes make of them.
 fn idlest(fitter: &Fitter, repaired: &Fit, errors: &ModelError) -> Option<usize> {
     let hypothesis = &repaired.hypothesis;
-    let chi2 = |fit: &Fit| errors.chi2_beside_noise(fitter.observation, &repaired.predicted, &fit.predicted);
+    let lines = errors.beside_lines(fitter.observation, &repaired.predicted);
+    let chi2 = |fit: &Fit| lines.chi2(&fit.predicted);
     let without =
         |index: usize| Some((index, chi2(&Fit::at(hypothesis.without(index), fitter.observation)?)));
     let missed = (0..hypothesis.effect_count()).filter_map(without);

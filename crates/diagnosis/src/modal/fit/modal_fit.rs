@@ -1,6 +1,7 @@
 //! What a fit of one hypothesis ends with, and what it says of itself.
 
 use crate::Hypothesis;
+use crate::modal::evidence::ln_of_mean;
 use crate::modal::prior::Prior;
 use crate::modal::problem::PairedModes;
 use crate::settings::modal::fit::BY_CHANCE;
@@ -85,9 +86,7 @@ pub(super) fn more_probable(a: Option<ModalFit>, b: Option<ModalFit>) -> Option<
 /// What two fits come to of which one or the other is so, each as probable beforehand: the more probable one,
 /// with the probability of either.
 pub(super) fn one_of_two(a: Option<ModalFit>, b: Option<ModalFit>) -> Option<ModalFit> {
-    let lns = [&a, &b].map(|fit| fit.as_ref().map_or(f64::NEG_INFINITY, |fit| fit.ln));
-    let mut best = more_probable(a, b)?;
-    let less = lns[0].min(lns[1]);
-    best.ln += (0.5 * (1.0 + (less - best.ln).exp())).ln();
-    Some(best)
+    let ln = |fit: &Option<ModalFit>| fit.as_ref().map_or(f64::NEG_INFINITY, |fit| fit.ln);
+    let ln = ln_of_mean(ln(&a), ln(&b));
+    more_probable(a, b).map(|best| ModalFit { ln, ..best })
 }
