@@ -355,6 +355,7 @@ fn of_oddity(oddity: &Oddity) -> Remark {
             let kind = if *is_reference { "reference" } else { "response" };
             Remark::odd(format!("{kind} {point}"), oddity.to_string())
         }
+        Oddity::Empty(_) => Remark::odd("recording", format!("{oddity} (here and in a diagnosis)")),
         Oddity::Masses(slip) => {
             let says = format!(
                 "{}{}; correct it, or insist on it with `diagnose --as-stated`",

@@ -33,7 +33,7 @@ impl Observation {
     /// without them they are estimated from coherence or scatter.
     ///
     /// The noise is estimated on all lines before any are left out. Lines at 0 Hz are never used, and neither
-    /// are single values without coherence. Of thousands of lines those are used that hold what there is to
+    /// are single values that were not measured. Of thousands of lines those are used that hold what there is to
     /// be told, those about resonances above all. Where the noise had to be estimated from scatter, and
     /// resonances differ among FRFs of one response by more than it, that drift counts as noise too.
     ///
@@ -51,9 +51,9 @@ impl Observation {
             let values = frfs.values(index);
             let variance = frfs.variance(index).unwrap_or(&[]);
             for line in 0..n {
-                let coherent = frfs.coherence(index).is_none_or(|c| c[line] > 0.0);
                 let variance = variance.get(line).copied().unwrap_or(0.0);
-                weight.push(if coherent && variance > 0.0 { 2.0 / variance } else { 0.0 });
+                let told = frfs.is_measured(index, line) && variance > 0.0;
+                weight.push(if told { 2.0 / variance } else { 0.0 });
                 let near = line.saturating_sub(LEVEL_WINDOW)..(line + LEVEL_WINDOW + 1).min(n);
                 let count = near.len() as f64;
                 level.push(values[near].iter().map(|v| v.norm_sqr()).sum::<f64>() / count);

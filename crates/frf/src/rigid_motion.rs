@@ -51,7 +51,7 @@ impl MaskReason {
     pub fn why(self) -> &'static str {
         match self {
             MaskReason::ZeroFrequency => "no displacement at 0 Hz",
-            MaskReason::NoCoherence => "zero coherence leaves too few FRFs",
+            MaskReason::NoCoherence => "too few FRFs were measured there",
             MaskReason::Undetermined => "the FRFs leave a motion undetermined",
             MaskReason::SingularFrf => "the FRF matrix is singular",
         }
@@ -215,11 +215,10 @@ impl<'a> LineFit<'a> {
 }
 
 /// Weight of an FRF's receptance on a line, `scale` times the variance being that of the receptance; zero
-/// without coherence.
+/// where it was not measured.
 fn weight(frfs: &FrfSet, (index, line): (usize, usize), scale: f64) -> f64 {
-    let coherent = frfs.coherence(index).is_none_or(|c| c[line] > 0.0);
     match frfs.variance(index) {
-        _ if !coherent => 0.0,
+        _ if !frfs.is_measured(index, line) => 0.0,
         Some(variance) if variance[line] > 0.0 => 1.0 / (variance[line] * scale),
         Some(_) | None => 1.0,
     }

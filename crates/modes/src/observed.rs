@@ -86,19 +86,13 @@ impl Observed {
         let mut weights = Vec::with_capacity(values.capacity());
         for index in 0..frfs.pairs().len() {
             let (all, variance) = (frfs.values(index), frfs.variance(index)?);
-            // A dead channel tells nothing, least of all that there is no motion.
-            let alive = lines.iter().any(|&line| all[line].norm_sqr() > 0.0);
             for &line in &lines {
                 let factor = frfs.form().factor_to(FrfForm::Accelerance, frfs.lines().omega(line))?;
-                let coherent = frfs.coherence(index).is_none_or(|c| c[line] > 0.0);
                 let spread = variance[line] * factor.norm_sqr();
                 values.push(all[line] * factor);
                 let weight = 1.0 / spread;
-                weights.push(if alive && coherent && spread > 0.0 && weight.is_finite() {
-                    weight
-                } else {
-                    0.0
-                });
+                let told = frfs.is_measured(index, line) && spread > 0.0 && weight.is_finite();
+                weights.push(if told { weight } else { 0.0 });
             }
         }
         Some(Observed {

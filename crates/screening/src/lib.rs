@@ -5,17 +5,20 @@
 //! what was meant, left out otherwise, and always said.
 //!
 //! 1. [dead](Oddity::Dead): no signal on any line. Left out.
-//! 2. [another axis](Oddity::Axis): FRFs are nothing like the fixture's, and like them at frequencies over
+//! 2. [no phase](Oddity::NoPhase): real on all lines, where the fixture's structure is damped. Left out.
+//! 3. [empty](Oddity::Empty): exactly zero on some lines, as where an analyser fills a band that it does not
+//!    export. Left out there.
+//! 4. [another axis](Oddity::Axis): FRFs are nothing like the fixture's, and like them at frequencies over
 //!    1000, 2π or 60. Taken there.
-//! 3. [another form](Oddity::Form): the levels fall behind the fixture's as frequency to the power −1 or −2,
+//! 5. [another form](Oddity::Form): the levels fall behind the fixture's as frequency to the power −1 or −2,
 //!    whatever the resonances do. Taken as mobility or receptance.
-//! 4. [another unit](Oddity::Unit): all levels are off by what lies between two units. Taken in the other
+//! 6. [another unit](Oddity::Unit): all levels are off by what lies between two units. Taken in the other
 //!    one.
-//! 5. [conjugated](Oddity::Conjugated): the phase rises through resonances, so the file's time dependence is
+//! 7. [conjugated](Oddity::Conjugated): the phase rises through resonances, so the file's time dependence is
 //!    e^{−iωt}. Conjugated.
-//! 6. [exchanged](Oddity::Exchanged): two FRFs are each like the fixture's other one, and neither like its
+//! 8. [exchanged](Oddity::Exchanged): two FRFs are each like the fixture's other one, and neither like its
 //!    own. Exchanged.
-//! 7. [unexcited](Oddity::Unexcited): no coherence over the upper part of the band. In all FRFs of a
+//! 9. [unexcited](Oddity::Unexcited): no coherence over the upper part of the band. In all FRFs of a
 //!    reference, left out there; in those of a sensor only said.
 //!
 //! Two things are told of what cannot be put right: [masses and inertias](Oddity::Masses) of the fixture in
@@ -26,17 +29,20 @@
 
 mod axis;
 mod conjugated;
+mod empty;
 mod exchanged;
 mod form;
 mod levels;
 mod masses;
 mod oddity;
+mod phase;
 mod plausibility;
 mod settings;
 mod steps;
 mod unexcited;
 mod unit;
 
+pub use empty::empty_lines;
 pub use levels::median;
 pub use oddity::Oddity;
 pub use plausibility::{Implausible, implausible, plausible};
@@ -65,6 +71,11 @@ pub enum ScreeningError {
         "all FRFs are zero on all lines: nothing was recorded, or not exported; check the channels and export again"
     )]
     NothingRecorded,
+    /// No FRF has a phase, and the fixture's structure is damped.
+    #[error(
+        "all FRFs are real on all lines: they are magnitudes or real parts, and without the phase nothing is told; export complex values, real and imaginary part"
+    )]
+    NoPhase,
     /// A part of the numbers was changed.
     #[error(
         "FRF {} steps by a factor of {} at {} Hz, and there are {} such steps in all, which no structure makes: a part of the numbers was changed, as where exponents are replaced in an editor; export the file again",
@@ -82,10 +93,19 @@ pub enum ScreeningError {
 /// The FRFs of a test of `fixture` as they are meant.
 ///
 /// # Errors
-/// [`ScreeningError::NothingRecorded`], [`ScreeningError::Changed`].
+/// [`ScreeningError::NothingRecorded`], [`ScreeningError::NoPhase`], [`ScreeningError::Changed`].
 pub fn screened(frfs: FrfSet, fixture: &Fixture) -> Result<Screened, ScreeningError> {
     let mut oddities = Vec::new();
     let mut frfs = alive(frfs, &mut oddities)?;
+    if phase::lacks(&frfs) && is_damped(&frfs, fixture) {
+        let (left, without) = phase::with_phase(&frfs)?;
+        frfs = left;
+        oddities.push(without);
+    }
+    if let Some(empty) = empty_lines(&frfs) {
+        frfs = empty::without_empty_lines(frfs);
+        oddities.push(empty);
+    }
     if let Some(steps) = steps::steps(&frfs) {
         return Err(ScreeningError::Changed(Box::new(steps)));
     }
@@ -166,6 +186,11 @@ fn modelled(frfs: &FrfSet, fixture: &Fixture) -> Option<Vec<Complex64>> {
         return None;
     }
     accelerances(fixture, frfs.pairs(), frfs.lines(), Instrument::AsRecorded).ok()
+}
+
+/// Whether the fixture's FRFs have a phase; those of one without a model may have.
+fn is_damped(frfs: &FrfSet, fixture: &Fixture) -> bool {
+    modelled(frfs, fixture).is_none_or(|model| model.iter().any(|value| value.im != 0.0))
 }
 
 /// The FRFs that have a signal.

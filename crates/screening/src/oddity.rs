@@ -10,6 +10,11 @@ use std::fmt;
 pub enum Oddity {
     /// FRFs without a signal on any line: left out.
     Dead(Vec<FrfPair>),
+    /// FRFs that are real on all lines, of a damped structure: left out.
+    NoPhase(Vec<FrfPair>),
+    /// Lines on which FRFs are exactly zero, which no recording is: each FRF with the number of its lines,
+    /// and the frequencies (Hz) of the first and the last. Left out.
+    Empty(Vec<(FrfPair, usize, [f64; 2])>),
     /// FRFs whose phase rises through resonances: their conjugates were taken.
     Conjugated(Vec<FrfPair>),
     /// FRFs that are of this form, and not what the file says: taken as such.
@@ -54,6 +59,17 @@ impl fmt::Display for Oddity {
                 if pairs.len() == 1 { "an FRF" } else { "FRFs" },
                 listed(pairs)
             ),
+            Oddity::NoPhase(pairs) => write!(
+                f,
+                "{} real on all lines, left out: {}; export complex values, not magnitudes or real parts",
+                if pairs.len() == 1 { "an FRF is" } else { "FRFs are" },
+                listed(pairs)
+            ),
+            Oddity::Empty(frfs) => write!(
+                f,
+                "exactly zero where nothing was recorded or exported, left out there: {}; export these lines again, or end the band before them with --band",
+                listed_lines(frfs)
+            ),
             Oddity::Conjugated(pairs) => write!(
                 f,
                 "the phase rises through the resonances, as with a time dependence of exp(−iωt): conjugates taken of {}; export with exp(+iωt), as universal files have it",
@@ -93,6 +109,21 @@ impl fmt::Display for Oddity {
             ),
         }
     }
+}
+
+/// FRFs with their lines, those with the same lines together.
+fn listed_lines(frfs: &[(FrfPair, usize, [f64; 2])]) -> String {
+    let alike = frfs.chunk_by(|a, b| (a.1, a.2) == (b.1, b.2));
+    let says = alike.map(|alike| {
+        let (_, count, [first, last]) = &alike[0];
+        let names: Vec<String> = alike.iter().map(|(pair, ..)| pair.to_string()).collect();
+        let at = match count {
+            1 => format!("at {} Hz", in_sentence(*first)),
+            _ => format!("on {count} lines from {} to {} Hz", in_sentence(*first), in_sentence(*last)),
+        };
+        format!("{} {at}", names.join(", "))
+    });
+    says.collect::<Vec<_>>().join("; ")
 }
 
 #[cfg(test)]

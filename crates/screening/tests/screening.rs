@@ -50,6 +50,42 @@ fn frfs_without_a_signal_are_left_out() {
 }
 
 #[test]
+fn lines_of_exactly_zero_are_said_and_left_out_where_all_frfs_have_them() {
+    let frfs = recorded(WELD);
+    let empty = |index: usize, line: usize| line >= 390 || (index == 2 && (100..120).contains(&line));
+    let zero = |at: usize, value| if empty(at / 400, at % 400) { Complex64::ZERO } else { value };
+    let (left, found) = oddities(&frfs.clone().with_values(zero));
+    let top = [977.5, 1000.0];
+    let of = |index: usize, count, lines| (pairs()[index].clone(), count, lines);
+    let listed = vec![of(0, 10, top), of(1, 10, top), of(2, 30, [252.5, 1000.0]), of(3, 10, top)];
+    assert_eq!(found, [Oddity::Empty(listed)]);
+    assert_eq!(left.lines().len(), 390);
+    let measured = |index: usize| (0..390).filter(|&line| left.is_measured(index, line)).count();
+    assert_eq!([0, 1, 2, 3].map(measured), [390, 390, 370, 390]);
+    assert!(found[0].to_string().contains("4/1, 3/1 on 10 lines from 977.5 to 1000 Hz; "), "{}", found[0]);
+}
+
+#[test]
+fn frfs_without_a_phase_are_left_out_unless_the_structure_has_no_damping() {
+    let frfs = recorded(WELD);
+    let magnitude = |value: Complex64| Complex64::from(value.norm());
+    let (left, found) =
+        oddities(&frfs.clone().with_values(|at, value| if at < 400 { magnitude(value) } else { value }));
+    assert_eq!(found, [Oddity::NoPhase(vec![pairs()[0].clone()])]);
+    assert_eq!(left.pairs(), &pairs()[1..]);
+    let nothing = frfs.with_values(|_, value| magnitude(value));
+    assert_eq!(screened(nothing, &fixture("")).unwrap_err(), ScreeningError::NoPhase);
+    let undamped = Fixture::from_json(
+        r#"{ "bodies": { "A": { "mass": 1.1, "inertia": 9.5e-4, "x_cg": -0.03 } },
+             "points": { "1": { "body": "A", "x": -0.06 }, "2": { "body": "A", "x": 0.0 } } }"#,
+    )
+    .unwrap();
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let frfs = synthesize(&undamped, &transverse(&[("1", "2")]), &lines, Instrument::AsRecorded).unwrap();
+    assert_eq!(screened(frfs, &undamped).unwrap().oddities, []);
+}
+
+#[test]
 fn conjugates_are_taken_back() {
     let frfs = recorded(WELD);
     let (back, found) = oddities(&frfs.clone().with_values(|_, value| value.conj()));

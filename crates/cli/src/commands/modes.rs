@@ -8,6 +8,7 @@ use jointscope::check::fixture_frfs;
 use jointscope::diagnosis::restored;
 use jointscope::report::format::quantity;
 use jointscope::report::{PageContext, modes_report};
+use jointscope::screening::empty_lines;
 use jointscope::spectra::in_text;
 use jointscope::{
     Band, MeasuredDamping, ModalAnalysis, ModesOptions, Remarks, Says, measured_damping, modes_file,
@@ -66,6 +67,7 @@ pub(super) fn run(arguments: &ModesArguments) -> Result<String, Refusal> {
         pick: arguments.pick.clone(),
     };
     let mut notes = recording.notes.clone();
+    notes.extend(empty_lines(frfs).map(|empty| empty.to_string()));
     let restored = restored(frfs);
     notes.extend(restored.as_ref().map(|(_, end)| end.says()));
     let frfs = restored.as_ref().map_or(frfs, |(frfs, _)| frfs);

@@ -55,7 +55,6 @@ impl Recorded {
         };
         for &index in &used {
             let (values, variance) = (frfs.values(index), frfs.variance(index));
-            let coherence = frfs.coherence(index);
             for &line in &lines {
                 let factor = frfs.form().factor_to(FrfForm::Accelerance, frfs.lines().omega(line))?;
                 let value = values[line] * factor;
@@ -63,9 +62,9 @@ impl Recorded {
                     Some(variance) => variance[line] * factor.norm_sqr(),
                     None => UNKNOWN_NOISE * UNKNOWN_NOISE * value.norm_sqr(),
                 };
-                let coherent = coherence.is_none_or(|c| c[line] > 0.0);
                 recorded.values.push(value);
-                recorded.weights.push(if coherent && variance > 0.0 { 2.0 / variance } else { 0.0 });
+                let told = frfs.is_measured(index, line) && variance > 0.0;
+                recorded.weights.push(if told { 2.0 / variance } else { 0.0 });
             }
         }
         recorded.list_channels();

@@ -40,7 +40,7 @@ pub(super) struct Basis {
 }
 
 impl Basis {
-    /// The block by its nodes; `None` where an FRF is no polynomial over it, or has a line without coherence.
+    /// The block by its nodes; `None` where an FRF is no polynomial over it, or was not measured on a line.
     pub(super) fn block(&mut self, frfs: &FrfSet, lines: Range<usize>) -> Option<Block> {
         let count = lines.len();
         let hz = &frfs.lines().hz()[lines.clone()];
@@ -48,7 +48,7 @@ impl Basis {
         self.orthonormal(hz, middle, half);
         let mut coefficients = Vec::with_capacity(frfs.pairs().len());
         for frf in 0..frfs.pairs().len() {
-            if frfs.coherence(frf).is_some_and(|coherence| coherence[lines.clone()].contains(&0.0)) {
+            if !lines.clone().all(|line| frfs.is_measured(frf, line)) {
                 return None;
             }
             coefficients.push(self.coefficients(&frfs.values(frf)[lines.clone()])?);

@@ -22,7 +22,8 @@ pub(crate) fn from_coherence(values: &[Complex64], coherence: &[f64], averages: 
     let degrees = 2.0 * f64::from(averages.max(2) - 1);
     let reach = ((TOLD / degrees / 2.0).ceil() as usize).clamp(SHORTEST, WINDOW);
     let level = |line: usize| {
-        let usable = around(line, reach, raw.len()).filter(|&i| coherence[i] > 0.0);
+        let measured = |&i: &usize| coherence[i] > 0.0 && values[i] != Complex64::ZERO;
+        let usable = around(line, reach, raw.len()).filter(measured);
         let near: Vec<(f64, f64)> = usable.map(|i| (i as f64 - line as f64, ratios[i])).collect();
         // What a level from ν degrees of freedom divides is too large in the mean by ν/(ν − 2).
         let all = degrees * near.len() as f64;

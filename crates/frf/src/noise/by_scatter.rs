@@ -15,6 +15,7 @@ const CLIPPED: f64 = 8.0;
 
 /// Variances E|ε|² of one FRF from what is left of its values at `hz` by a rational function through their
 /// neighbours: one mode and a smooth rest. Medians over a window keep out what is neither, two modes at once.
+/// Values of exactly zero were not measured and tell nothing of it.
 pub fn from_scatter(hz: &[f64], values: &[Complex64]) -> Vec<f64> {
     let n = values.len();
     let size: Vec<f64> = values.iter().map(|v| v.norm_sqr()).collect();
@@ -24,6 +25,9 @@ pub fn from_scatter(hz: &[f64], values: &[Complex64]) -> Vec<f64> {
     }
     let mut fit = LocalRationalFit::new();
     let local = |line: usize| {
+        if size[line] == 0.0 {
+            return None;
+        }
         let local = fit.about(hz, values, line, NEIGHBOURS)?;
         (local.leverage < FOLLOWED).then(|| local.residual.norm_sqr() / (1.0 - local.leverage))
     };

@@ -17,7 +17,7 @@ pub(crate) const FLOOR: f64 = 1e-5;
 
 /// Smooths variances of single lines over the lines: the noise of the channels varies slowly, and what it
 /// makes of an FRF rises wherever the power of the `force`, in any unit, dips. An empty `force` is one that
-/// is the same on all lines; lines without coherence are skipped.
+/// is the same on all lines; lines without coherence or of exactly zero are skipped.
 ///
 /// `alike` is the number of neighbouring lines that tell as much about the noise as one line whose noise is
 /// its own: 1 without a window, more under one or with zero padding. The mean is over that many times more
@@ -38,7 +38,8 @@ pub fn smoothed(
         _ => 1.0,
     };
     let raw: Vec<f64> = of_lines.iter().enumerate().map(|(line, variance)| variance * power(line)).collect();
-    let usable: Vec<bool> = coherence.iter().map(|&g| g > 0.0).collect();
+    let measured = |(value, gamma2): (&Complex64, &f64)| *gamma2 > 0.0 && *value != Complex64::ZERO;
+    let usable: Vec<bool> = values.iter().zip(coherence).map(measured).collect();
     let mean = |line: usize| {
         let (mut sum, mut count) = (0.0, 0.0f64);
         for i in around(line, reach, raw.len()).filter(|&i| usable[i]) {
