@@ -69,11 +69,13 @@ pub(crate) fn of(frfs: &FrfSet, sources: &[NoiseSource], modelled: Option<&[Comp
         .collect()
 }
 
-/// √(Σ|a − b|²/Σ|a|²); in parts of the largest value, for squares of absurd ones overflow.
+/// √(Σ|a − b|²/Σ|a|²) where `measured` is not zero; in parts of the largest value, for squares of absurd ones
+/// overflow.
 pub(crate) fn nrmse(measured: &[Complex64], modelled: &[Complex64]) -> Option<f64> {
-    let largest = measured.iter().chain(modelled).map(|value| value.norm()).fold(0.0, f64::max);
-    let apart: f64 = measured.iter().zip(modelled).map(|(a, b)| ((a - b) / largest).norm_sqr()).sum();
-    let size: f64 = measured.iter().map(|a| (a / largest).norm_sqr()).sum();
+    let both = || measured.iter().zip(modelled).filter(|(measured, _)| **measured != Complex64::ZERO);
+    let largest = both().map(|(a, b)| a.norm().max(b.norm())).fold(0.0, f64::max);
+    let apart: f64 = both().map(|(a, b)| ((a - b) / largest).norm_sqr()).sum();
+    let size: f64 = both().map(|(a, _)| (a / largest).norm_sqr()).sum();
     (size > 0.0 && apart.is_finite()).then(|| (apart / size).sqrt())
 }
 

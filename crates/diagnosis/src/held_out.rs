@@ -54,13 +54,8 @@ impl Division {
     pub(crate) fn judge(&self, blind: &Search, found: &Search, observation: &Observation) -> Option<HeldOut> {
         let error = |fit: &Fit| -> Option<f64> {
             let predicted = fit.hypothesis.predict(observation).ok()?;
-            let values = observation.values().iter().zip(&predicted).zip(&self.unseen);
-            let (mut error, mut size) = (0.0, 0.0);
-            for ((measured, predicted), _) in values.filter(|(_, unseen)| **unseen) {
-                error += (measured - predicted).norm_sqr();
-                size += measured.norm_sqr();
-            }
-            Some((error / size).sqrt())
+            let unseen = (0..self.unseen.len()).filter(|at| self.unseen[*at]);
+            Some(observation.nrmse_of(&predicted, unseen))
         };
         let named = found.repaired.hypothesis.effect_count() > 0;
         let repaired = if named { &blind.repaired } else { &blind.refitted };

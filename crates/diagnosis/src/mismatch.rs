@@ -36,8 +36,6 @@ pub(crate) fn mismatch(observation: &Observation, predicted: &[Complex64], bands
     let of = |(index, pair): (usize, &FrfPair)| {
         let at = |line: usize| index * n + line;
         let residual = |line: usize| (observation.values()[at(line)] - predicted[at(line)]).norm_sqr();
-        let error: f64 = (0..n).map(residual).sum();
-        let size: f64 = (0..n).map(|line| observation.values()[at(line)].norm_sqr()).sum();
         let chi2 = |range: std::ops::Range<usize>| {
             range.map(|l| observation.weights()[at(l)] * residual(l)).sum::<f64>()
         };
@@ -47,7 +45,8 @@ pub(crate) fn mismatch(observation: &Observation, predicted: &[Complex64], bands
             to: hz[edge(b + 1) - 1],
             share: chi2(edge(b)..edge(b + 1)) / whole,
         };
-        FrfMismatch { frf: pair.clone(), nrmse: (error / size).sqrt(), bands: (0..bands).map(band).collect() }
+        let nrmse = observation.nrmse_of(predicted, (0..n).map(at));
+        FrfMismatch { frf: pair.clone(), nrmse, bands: (0..bands).map(band).collect() }
     };
     observation.pairs().iter().enumerate().map(of).collect()
 }

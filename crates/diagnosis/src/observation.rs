@@ -324,12 +324,17 @@ impl Observation {
 
     /// √(Σ|H_model − H_measured|² / Σ|H_measured|²) over all FRFs and lines.
     pub fn nrmse(&self, modelled: &[Complex64]) -> f64 {
+        self.nrmse_of(modelled, 0..self.weight.len())
+    }
+
+    /// The same over the values at such places, FRF after FRF, that were measured; nothing where none was.
+    pub(crate) fn nrmse_of(&self, modelled: &[Complex64], places: impl Iterator<Item = usize>) -> f64 {
         let (mut error, mut size) = (0.0, 0.0);
-        for (measured, modelled) in self.values().iter().zip(modelled) {
-            error += (measured - modelled).norm_sqr();
-            size += measured.norm_sqr();
+        for at in places.filter(|at| self.weight[*at] > 0.0) {
+            error += (self.values()[at] - modelled[at]).norm_sqr();
+            size += self.values()[at].norm_sqr();
         }
-        (error / size).sqrt()
+        if size > 0.0 { (error / size).sqrt() } else { 0.0 }
     }
 
     /// Relative uncertainty of the noise's variances: those from coherence are smoothed over lines, those

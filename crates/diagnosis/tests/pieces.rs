@@ -5,6 +5,7 @@ use jointscope_diagnosis::{Fit, Hypothesis, Observation, catalogue};
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Motion, Place, Starts};
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
+use num_complex::Complex64;
 
 fn fixture() -> Fixture {
     Fixture::from_json(
@@ -263,6 +264,16 @@ fn an_observation_on_fewer_lines_and_frfs_keeps_the_noise_of_what_is_left() {
     assert_eq!((fewer.pairs().len(), fewer.lines().len()), (3, 60));
     assert_eq!(fewer.weights()[60], all.weights()[2 * 120 + 60]);
     assert!(all.reduced(|_| false, |_| true).is_none() && all.reduced(|_| true, |_| false).is_none());
+}
+
+#[test]
+fn values_that_were_not_measured_count_in_neither_chi2_nor_the_relative_error() {
+    let empty = |at: usize| (30..50).contains(&at) || at >= 470;
+    let zero = |at, value| if empty(at) { Complex64::ZERO } else { value };
+    let observation = Observation::new(&recorded(&fixture()).with_values(zero), |_| true).unwrap();
+    let predicted = Hypothesis::nominal(&fixture(), false).predict(&observation).unwrap();
+    assert_eq!(observation.degrees(), 2 * (4 * 120 - 30));
+    assert!(observation.chi2(&predicted) < 1e-9 && observation.nrmse(&predicted) < 1e-9);
 }
 
 #[test]

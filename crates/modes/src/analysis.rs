@@ -174,16 +174,18 @@ impl ModalAnalysis {
         &self.rebuilt[frf * n..(frf + 1) * n]
     }
 
-    /// √(Σ|rebuilt − measured|²/Σ|measured|²) of each FRF over the recorded lines, as accelerance.
+    /// √(Σ|rebuilt − measured|²/Σ|measured|²) of each FRF over the lines on which it was measured, as
+    /// accelerance.
     pub fn relative_errors(&self) -> Vec<f64> {
         let error = |frf: usize| {
             let (model, data) = (self.rebuilt(frf), self.measured.values(frf));
-            let over_lines = |squares: &mut dyn Iterator<Item = f64>| -> f64 {
-                squares.zip(&self.stands_for).map(|(square, lines)| square * lines).sum()
-            };
-            let left = over_lines(&mut model.iter().zip(data).map(|(a, b)| (a - b).norm_sqr()));
-            let kept = over_lines(&mut data.iter().map(|v| v.norm_sqr()));
             let n = self.stands_for.len();
+            let over_lines = |square: &dyn Fn(usize) -> f64| -> f64 {
+                let lines = (0..n).filter(|&line| self.measured.is_measured(frf, line));
+                lines.map(|line| square(line) * self.stands_for[line]).sum()
+            };
+            let left = over_lines(&|line| (model[line] - data[line]).norm_sqr());
+            let kept = over_lines(&|line| data[line].norm_sqr());
             let taken_out: f64 = self.taken_out[frf * n..(frf + 1) * n].iter().sum();
             let (apart, size) = (left + taken_out, kept + taken_out);
             if size > 0.0 { (apart / size).sqrt() } else { 0.0 }

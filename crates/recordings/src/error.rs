@@ -159,7 +159,9 @@ pub enum RecordingError {
         second: Box<FunctionPlace>,
     },
     /// Functions on different spectral lines.
-    #[error("{second} has {second_lines}, but {first} has {first_lines}; give functions on the same lines")]
+    #[error(
+        "{second} has {second_lines}, but {first} has {first_lines}; give functions on the same lines, or on parts of them"
+    )]
     Lines {
         /// One function.
         first: Box<FunctionPlace>,
@@ -268,6 +270,11 @@ impl RecordingError {
     pub(crate) fn function(place: Box<FunctionPlace>, problem: impl Into<FunctionError>) -> Self {
         RecordingError::Function { place, problem: problem.into() }
     }
+}
+
+/// `1 line`, `2 lines`.
+pub(crate) fn with_count(count: usize, what: &str) -> String {
+    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
 }
 
 /// Names in a row, the end of a long row cut short.

@@ -48,6 +48,7 @@
 mod assumed_units;
 mod channel_map;
 mod coherence;
+mod common_lines;
 mod completeness;
 mod contents;
 mod datasets;

@@ -3,13 +3,14 @@
 use std::collections::BTreeSet;
 
 use jointscope_fixture::Fixture;
-use jointscope_spectra::{FrfForm, FrfSet, SpectralLines, in_text};
+use jointscope_spectra::{FrfForm, FrfSet};
 use num_complex::Complex64;
 
 use crate::coherence::CoherenceNotes;
+use crate::common_lines::{common_lines, lines_of, on_other_lines};
 use crate::completeness;
 use crate::contents::Contents;
-use crate::error::enumeration;
+use crate::error::{enumeration, with_count};
 use crate::function::{LinesCache, append_accelerances, functions};
 use crate::gather::{Entry, Gathered, example, gather, in_order, points};
 use crate::ordinate::{Ordinate, UnitNotes, may_be_force, ordinate};
@@ -46,7 +47,7 @@ pub struct Level {
     pub held: Option<HeldAmplitude>,
     /// Accelerances in SI units along +y and +θ, in the order of the fixture's points, with coherence and
     /// averages where they were recorded; at 0 Hz they are what the file holds, or zero where the file holds
-    /// a mobility or receptance.
+    /// a mobility or receptance. Those that were recorded over a part of the lines are zero on the others.
     pub frfs: FrfSet,
     /// The form in which each FRF was recorded.
     pub recorded_forms: Vec<FrfForm>,
@@ -220,10 +221,6 @@ impl Notes {
     }
 }
 
-fn with_count(count: usize, what: &str) -> String {
-    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
-}
-
 fn distinct(channels: &[FileChannel]) -> Vec<FileChannel> {
     channels.iter().copied().collect::<BTreeSet<_>>().into_iter().collect()
 }
@@ -277,11 +274,11 @@ fn level<'a>(
     (options, notes): (&ReadOptions, &mut CoherenceNotes),
 ) -> Result<Level, RecordingError> {
     let first = &frfs[0].0;
-    let lines = cache.lines(first.function.dataset).map_err(|problem| first.refuse(problem))?;
+    let entries: Vec<&Entry> = frfs.iter().map(|(entry, _)| entry).collect();
+    let (lines, parts) = common_lines(&entries, cache)?;
     let mut values = Vec::with_capacity(frfs.len() * lines.len());
     let window_decay = decay_of(first)?;
-    for (entry, ordinate) in frfs {
-        same_lines(cache, first, &lines, entry)?;
+    for ((entry, ordinate), part) in frfs.iter().zip(&parts) {
         let decay = decay_of(entry)?;
         if decay != window_decay {
             return Err(RecordingError::Windows {
@@ -292,7 +289,9 @@ fn level<'a>(
             });
         }
         let recorded = entry.function.complex().map_err(|problem| entry.refuse(problem))?;
-        append_accelerances(&mut values, recorded, ordinate.form, entry.sign * ordinate.si, &lines);
+        values.resize(values.len() + part.start, Complex64::ZERO);
+        append_accelerances(&mut values, recorded, ordinate.form, entry.sign * ordinate.si, &part.lines);
+        values.resize(values.len() + part.beyond, Complex64::ZERO);
     }
     let largest = |values: &[Complex64]| values.iter().map(|value| value.norm()).fold(0.0, f64::max);
     let silent = largest(&values) < MAGNITUDES[0];
@@ -304,13 +303,16 @@ fn level<'a>(
     }
     let pairs = frfs.iter().map(|(entry, _)| entry.pair.clone()).collect();
     let mut set = FrfSet::new(lines.clone(), FrfForm::Accelerance, pairs, values)?;
-    for (index, (entry, _)) in frfs.iter().enumerate() {
+    for (index, ((entry, _), part)) in frfs.iter().zip(&parts).enumerate() {
         let mut averages = entry.function.averages().map_err(|problem| entry.refuse(problem))?;
         if let Some(coherence) = entry.counterpart(coherences).filter(|_| !options.ignore_coherence) {
-            same_lines(cache, first, &lines, coherence)?;
+            let found = lines_of(coherence, cache)?;
+            let start = found.place_of(&part.lines);
+            let start = start.ok_or_else(|| on_other_lines((entry, &part.lines), (coherence, &found)))?;
             let values = coherence.function.coherence().map_err(|problem| coherence.refuse(problem))?;
             if let Some(values) = notes.usable(entry.pair.to_string(), values) {
-                set.set_coherence(index, values)?;
+                let of_frf = &values[start..start + part.lines.len()];
+                set.set_coherence(index, part.over_all_lines(of_frf))?;
             }
             if averages.is_none() {
                 averages = coherence.function.averages().map_err(|problem| coherence.refuse(problem))?;
@@ -324,28 +326,4 @@ fn level<'a>(
 
 fn decay_of(entry: &Entry) -> Result<f64, RecordingError> {
     entry.function.window_decay().map_err(|problem| entry.refuse(problem))
-}
-
-fn same_lines<'a>(
-    cache: &mut LinesCache<'a>,
-    first: &Entry<'a>,
-    lines: &SpectralLines,
-    entry: &Entry<'a>,
-) -> Result<(), RecordingError> {
-    let found = cache.lines(entry.function.dataset).map_err(|problem| entry.refuse(problem))?;
-    if lines.agrees_with(&found) {
-        return Ok(());
-    }
-    Err(RecordingError::Lines {
-        first: first.function.place(),
-        first_lines: extent(lines),
-        second: entry.function.place(),
-        second_lines: extent(&found),
-    })
-}
-
-/// `400 lines from 2.5 to 1000 Hz`.
-fn extent(lines: &SpectralLines) -> String {
-    let hz = lines.hz();
-    format!("{} from {} to {} Hz", with_count(hz.len(), "line"), in_text(hz[0]), in_text(hz[hz.len() - 1]))
 }

@@ -12,8 +12,8 @@ pub enum Oddity {
     Dead(Vec<FrfPair>),
     /// FRFs that are real on all lines, of a damped structure: left out.
     NoPhase(Vec<FrfPair>),
-    /// Lines on which FRFs are exactly zero, which no recording is: each FRF with the number of its lines,
-    /// and the frequencies (Hz) of the first and the last. Left out.
+    /// Lines on which FRFs have no value or one of exactly zero, which no recording has: each FRF with the
+    /// number of its lines, and the frequencies (Hz) of the first and the last. Left out.
     Empty(Vec<(FrfPair, usize, [f64; 2])>),
     /// FRFs whose phase rises through resonances: their conjugates were taken.
     Conjugated(Vec<FrfPair>),
@@ -67,7 +67,7 @@ impl fmt::Display for Oddity {
             ),
             Oddity::Empty(frfs) => write!(
                 f,
-                "exactly zero where nothing was recorded or exported, left out there: {}; export these lines again, or end the band before them with --band",
+                "nothing was recorded or exported on some lines (no value, or exactly zero), left out there: {}; export these lines too, or end the band before them with --band",
                 listed_lines(frfs)
             ),
             Oddity::Conjugated(pairs) => write!(

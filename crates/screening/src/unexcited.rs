@@ -4,11 +4,11 @@ use crate::Oddity;
 use crate::levels::median;
 use crate::settings::unexcited::{LEAST_COHERENCE, LEAST_SHARE, WINDOW_LINES};
 use jointscope_spectra::{FrfPair, FrfSet};
+use num_complex::Complex64;
 
 /// Channels whose FRFs all lack coherence from some line to the end of the band.
 pub(crate) fn unexcited(frfs: &FrfSet) -> Vec<Oddity> {
-    let starts: Vec<Option<usize>> =
-        (0..frfs.pairs().len()).map(|index| start(frfs.coherence(index)?)).collect();
+    let starts: Vec<Option<usize>> = (0..frfs.pairs().len()).map(|index| start_of(frfs, index)).collect();
     let mut found = Vec::new();
     let mut said = vec![false; starts.len()];
     // A hammer that does not excite the band shows in all FRFs of its blows, and no sensor is to blame then.
@@ -35,6 +35,14 @@ pub(crate) fn unexcited(frfs: &FrfSet) -> Vec<Oddity> {
         }
     }
     found
+}
+
+/// The first line of those on which an FRF has a value from which on it has no coherence.
+fn start_of(frfs: &FrfSet, index: usize) -> Option<usize> {
+    let (values, coherence) = (frfs.values(index), frfs.coherence(index)?);
+    let told: Vec<usize> = (0..values.len()).filter(|&line| values[line] != Complex64::ZERO).collect();
+    let of_these: Vec<f64> = told.iter().map(|&line| coherence[line]).collect();
+    Some(told[start(&of_these)?])
 }
 
 /// The first line from which on there is no coherence, where that is a part of the band worth a word.

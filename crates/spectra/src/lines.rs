@@ -103,10 +103,37 @@ impl SpectralLines {
     /// Whether `other` has the same lines to within a hundredth of the smallest spacing: analysers
     /// print the same step with different roundings.
     pub fn agrees_with(&self, other: &SpectralLines) -> bool {
+        self.len() == other.len() && self.place_of(other) == Some(0)
+    }
+
+    /// The index from which on `other`, which ends no later, has the lines that follow here; `None` where it
+    /// has others.
+    pub fn place_of(&self, other: &SpectralLines) -> Option<usize> {
+        let start = self.begin_of(other)?;
+        (start + other.len() <= self.len()).then_some(start)
+    }
+
+    /// The lines of both, where these are parts of one axis that overlap by two lines or more; `None`
+    /// elsewhere.
+    pub fn joined(&self, other: &SpectralLines) -> Option<Self> {
+        let [(first, start, second)] = match (self.begin_of(other), other.begin_of(self)) {
+            (Some(start), _) => [(self, start, other)],
+            (None, Some(start)) => [(other, start, self)],
+            (None, None) => return None,
+        };
+        let overlap = (first.len() - start).min(second.len());
+        let all = first.0.iter().chain(&second.0[overlap..]).copied();
+        (overlap >= 2).then(|| SpectralLines(all.collect()))
+    }
+
+    /// The index at which `other` begins, if its lines and these are the same from there to where the first
+    /// of them end.
+    fn begin_of(&self, other: &SpectralLines) -> Option<usize> {
         let of_one = 1e-6 * self.0[0].max(1.0);
         let tolerance = self.least_spacing().map_or(of_one, |spacing| 0.01 * spacing);
-        self.len() == other.len()
-            && self.0.iter().zip(other.0.iter()).all(|(a, b)| (a - b).abs() <= tolerance)
+        let start = self.0.partition_point(|hz| *hz < other.0[0] - tolerance);
+        let both = self.0[start..].iter().zip(other.0.iter());
+        (start < self.len() && both.into_iter().all(|(a, b)| (a - b).abs() <= tolerance)).then_some(start)
     }
 }
 
@@ -134,6 +161,22 @@ mod tests {
         assert_eq!(lines.range(2.5, 10.0), 1..5);
         assert_eq!(lines.range(2000.0, 3000.0).len(), 0);
         assert_eq!(lines.range(10.0, 2.5).len(), 0);
+    }
+
+    #[test]
+    fn parts_of_one_axis_are_joined_and_found_in_it() {
+        let part = |start: f64, count| SpectralLines::even(start, 2.5, count).unwrap();
+        let whole = part(2.5, 400);
+        let (low, high) = (part(2.5, 300), part(500.0, 201));
+        assert_eq!(low.joined(&high).unwrap(), whole);
+        assert_eq!(high.joined(&low).unwrap(), whole);
+        assert_eq!(whole.joined(&part(100.0, 7)).unwrap(), whole);
+        assert_eq!([&low, &high, &whole].map(|lines| whole.place_of(lines)), [Some(0), Some(199), Some(0)]);
+        assert_eq!(low.place_of(&high), None, "it ends beyond");
+        // Another step, an axis between the lines, parts apart, or that touch in a line alone.
+        let others =
+            [SpectralLines::even(5.0, 5.0, 200).unwrap(), part(3.0, 300), part(755.0, 9), part(750.0, 9)];
+        assert_eq!(others.map(|other| low.joined(&other)), [None, None, None, None]);
     }
 
     #[test]

@@ -149,6 +149,23 @@ fn functions_on_different_lines_are_named_with_their_lines() {
 }
 
 #[test]
+fn frfs_over_different_parts_of_one_axis_are_read_together_each_measured_on_its_own_lines() {
+    let gamma = |dataset| on(dataset, 12.5, 2.5);
+    let recording = read(vec![
+        frf((3, 2), (1, 2)),
+        gamma(frf((4, 2), (1, 2))),
+        gamma(coherence((4, 2), (1, 2), [0.9, 0.8, 0.7])),
+    ])
+    .unwrap();
+    let frfs = recording.frfs().unwrap();
+    assert_eq!(frfs.lines().hz(), [10.0, 12.5, 15.0, 17.5]);
+    let measured = |index: usize| (0..4).map(|line| frfs.is_measured(index, line)).collect::<Vec<_>>();
+    assert_eq!(measured(0), [true, true, true, false]);
+    assert_eq!(measured(1), [false, true, true, true]);
+    assert_eq!(frfs.coherence(1).unwrap(), [0.0, 0.9, 0.8, 0.7]);
+}
+
+#[test]
 fn the_same_numbers_in_other_units_of_frequency_are_other_lines() {
     let kilohertz = Axis::new(18, "Frequency", "kHz");
     let datasets = vec![frf((3, 2), (1, 2)), Dataset58 { abscissa_axis: kilohertz, ..frf((4, 2), (1, 2)) }];
