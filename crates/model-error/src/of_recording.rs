@@ -63,6 +63,18 @@ fn with_expected(recording: WeightedFrfs, fit: FreeFit, besides: &[Pole], all: &
     other.filter(|other| fit.is_worse(other, recording)).unwrap_or(fit)
 }
 
+/// What no poles explain of a recording above its lowest lines, where suspensions lie that no lines tell from a
+/// mass line: χ² per degree of freedom there, at least one, and degrees of freedom. `fit` is that of all lines.
+pub(crate) fn unexplained_where_resolved(recording: WeightedFrfs, fit: &FreeFit) -> Option<(f64, f64)> {
+    let above = Above::line(recording, RESOLVED_LINES)?;
+    let recording = above.recording();
+    let (inside, outside) = fit.poles.split_at(fit.inside);
+    let is_within = |pole: &Pole| pole.omega >= TAU * above.frfs.lines().hz()[0];
+    let (within, low): (Vec<Pole>, Vec<Pole>) = inside.iter().copied().partition(is_within);
+    let fit = free_fit(recording, within, &[outside, &low].concat())?;
+    Some((fit.chi2_per_dof(recording).max(1.0), recording.degrees()))
+}
+
 /// A recording without its lowest lines.
 struct Above {
     frfs: FrfSet,

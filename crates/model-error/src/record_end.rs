@@ -14,13 +14,15 @@
 //!
 //! The poles say how much is left of each mode, so τ, from the middle of the blow, and σ are the only
 //! unknowns. What is missing is told from the FRFs themselves. FRFs that were not estimated from such records,
-//! a model's or those of random excitation, have no such ripple, and only get worse for it.
+//! a model's or those of random excitation, have no such ripple, and only get worse for it. A suspension about
+//! the lowest lines, which no lines tell, leaves what an end seems to explain: where poles explain all lines above
+//! these, no end is looked for.
 
 mod ringing;
 
 use crate::basis::TERMS;
 use crate::free_fit::FreeFit;
-use crate::of_recording::{completed, poles_of};
+use crate::of_recording::{completed, poles_of, unexplained_where_resolved};
 use crate::recording::WeightedFrfs;
 use crate::settings::record_end::{
     LEAST_GAIN, LEAST_LEFT, LEFT_OF_MISFIT, LONGEST_BLOW, NEAR_LINES, ROUNDS, SHORTEST, STEPS,
@@ -55,6 +57,10 @@ impl RecordEnd {
         }
         let as_recorded = completed(recording, fit.clone());
         if most_gain(&as_recorded, recording) < LEAST_GAIN {
+            return None;
+        }
+        let (left, degrees) = unexplained_where_resolved(recording, &as_recorded)?;
+        if degrees * left.ln() < LEAST_GAIN {
             return None;
         }
         let highest = hz[hz.len() - 1];
