@@ -8,18 +8,20 @@
 //! 2. [no phase](Oddity::NoPhase): real on all lines, where the fixture's structure is damped. Left out.
 //! 3. [empty](Oddity::Empty): exactly zero on some lines, as where an analyser fills a band that it does not
 //!    export. Left out there.
-//! 4. [another axis](Oddity::Axis): FRFs are nothing like the fixture's, and like them at frequencies over
+//! 4. [polar](Oddity::Polar): magnitudes or decibels and phases in the place of real and imaginary parts: what
+//!    should be imaginary parts lies at whole half turns. Taken so.
+//! 5. [another axis](Oddity::Axis): FRFs are nothing like the fixture's, and like them at frequencies over
 //!    1000, 2π or 60. Taken there.
-//! 5. [another form](Oddity::Form): the levels fall behind the fixture's as frequency to the power −1 or −2,
+//! 6. [another form](Oddity::Form): the levels fall behind the fixture's as frequency to the power −1 or −2,
 //!    whatever the resonances do. Taken as mobility or receptance.
-//! 6. [another unit](Oddity::Unit): all levels are off by what lies between two units. Taken in the other
+//! 7. [another unit](Oddity::Unit): all levels are off by what lies between two units. Taken in the other
 //!    one.
-//! 7. [conjugated](Oddity::Conjugated): the phase rises through resonances, so the file's time dependence is
+//! 8. [conjugated](Oddity::Conjugated): the phase rises through resonances, so the file's time dependence is
 //!    e^{−iωt}. Conjugated.
-//! 8. [exchanged](Oddity::Exchanged): two FRFs are each like the fixture's other one, and neither like its
+//! 9. [exchanged](Oddity::Exchanged): two FRFs are each like the fixture's other one, and neither like its
 //!    own. Exchanged.
-//! 9. [unexcited](Oddity::Unexcited): no coherence over the upper part of the band. In all FRFs of a
-//!    reference, left out there; in those of a sensor only said.
+//! 10. [unexcited](Oddity::Unexcited): no coherence over the upper part of the band. In all FRFs of a
+//!     reference, left out there; in those of a sensor only said.
 //!
 //! Two things are told of what cannot be put right: [masses and inertias](Oddity::Masses) of the fixture in
 //! another unit, and FRFs of which [a part](Steps) was changed.
@@ -37,6 +39,7 @@ mod masses;
 mod oddity;
 mod phase;
 mod plausibility;
+mod polar;
 mod settings;
 mod steps;
 mod unexcited;
@@ -46,6 +49,7 @@ pub use empty::empty_lines;
 pub use levels::median;
 pub use oddity::Oddity;
 pub use plausibility::{Implausible, implausible, plausible};
+pub use polar::Polar;
 pub use steps::Steps;
 
 use crate::settings::dead::RMS_RATIO;
@@ -106,10 +110,14 @@ pub fn screened(frfs: FrfSet, fixture: &Fixture) -> Result<Screened, ScreeningEr
         frfs = empty::without_empty_lines(frfs);
         oddities.push(empty);
     }
+    let mut modelled = modelled(&frfs, fixture);
+    if let Some(reading) = polar::polar(&frfs, modelled.as_deref()) {
+        frfs = frfs.with_values(|_, value| reading.value(value));
+        oddities.push(Oddity::Polar(reading));
+    }
     if let Some(steps) = steps::steps(&frfs) {
         return Err(ScreeningError::Changed(Box::new(steps)));
     }
-    let mut modelled = modelled(&frfs, fixture);
     if let Some(at_these) = &modelled
         && let Some(factor) = axis::off_axis(&frfs, at_these, fixture)
         && let Some(lines) = axis::over(frfs.lines(), factor)

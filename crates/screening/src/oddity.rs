@@ -1,6 +1,6 @@
 //! Something odd in a recording, in a sentence.
 
-use crate::Implausible;
+use crate::{Implausible, Polar};
 use jointscope_spectra::{FrfForm, FrfPair, in_sentence};
 use std::fmt;
 
@@ -15,6 +15,8 @@ pub enum Oddity {
     /// Lines on which FRFs have no value or one of exactly zero, which no recording has: each FRF with the
     /// number of its lines, and the frequencies (Hz) of the first and the last. Left out.
     Empty(Vec<(FrfPair, usize, [f64; 2])>),
+    /// Real and imaginary parts that are magnitudes and phases: taken as such.
+    Polar(Polar),
     /// FRFs whose phase rises through resonances: their conjugates were taken.
     Conjugated(Vec<FrfPair>),
     /// FRFs that are of this form, and not what the file says: taken as such.
@@ -69,6 +71,11 @@ impl fmt::Display for Oddity {
                 f,
                 "nothing was recorded or exported on some lines (no value, or exactly zero), left out there: {}; export these lines too, or end the band before them with --band",
                 listed_lines(frfs)
+            ),
+            Oddity::Polar(polar) => write!(
+                f,
+                "what stands for real and imaginary parts are {}: taken as such; export real and imaginary parts, or say what the columns of a table are",
+                polar.says()
             ),
             Oddity::Conjugated(pairs) => write!(
                 f,

@@ -33,6 +33,17 @@ pub(crate) mod steps {
     pub(crate) const FEWEST_STEPS: usize = 2;
 }
 
+/// Magnitudes and phases in the place of real and imaginary parts.
+pub(crate) mod polar {
+    /// How near to a whole half turn, as a share of it, a phase is near it: numbers of any other kind are by
+    /// twice that share of them.
+    pub(crate) const NEAR_WHOLE: f64 = 1.0 / 9.0;
+    /// Share of those beyond a quarter turn that must be.
+    pub(crate) const WHOLE_SHARE: f64 = 0.8;
+    /// Least share of all values that lies beyond a quarter turn.
+    pub(crate) const LEAST_TURNED: f64 = 0.05;
+}
+
 /// A frequency axis in another unit.
 pub(crate) mod axis {
     /// Distance from which FRFs are unlike the fixture's.

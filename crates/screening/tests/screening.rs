@@ -5,7 +5,7 @@
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_samples::{ACROSS, transverse};
-use jointscope_screening::{Oddity, ScreeningError, screened};
+use jointscope_screening::{Oddity, Polar, ScreeningError, screened};
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 use proptest::prelude::*;
@@ -83,6 +83,26 @@ fn frfs_without_a_phase_are_left_out_unless_the_structure_has_no_damping() {
     let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
     let frfs = synthesize(&undamped, &transverse(&[("1", "2")]), &lines, Instrument::AsRecorded).unwrap();
     assert_eq!(screened(frfs, &undamped).unwrap().oddities, []);
+}
+
+#[test]
+fn magnitudes_and_phases_in_the_place_of_real_and_imaginary_parts_are_taken_as_what_they_are() {
+    let frfs = recorded(WELD);
+    let decibels = |value: Complex64| 20.0 * value.norm().log10();
+    let readings: [(Polar, &dyn Fn(Complex64) -> Complex64); 4] = [
+        (Polar::Degrees, &|value| Complex64::new(value.norm(), value.arg().to_degrees())),
+        (Polar::Radians, &|value| Complex64::new(value.norm(), value.arg())),
+        (Polar::DecibelsDegrees, &|value| Complex64::new(decibels(value), value.arg().to_degrees())),
+        (Polar::DecibelsRadians, &|value| Complex64::new(decibels(value), value.arg())),
+    ];
+    for (polar, written) in readings {
+        let (back, found) = oddities(&frfs.clone().with_values(|_, value| written(value)));
+        assert_eq!(found, [Oddity::Polar(polar)]);
+        for (a, b) in back.all_values().iter().zip(frfs.all_values()) {
+            assert!((a - b).norm() < 1e-12 * b.norm());
+        }
+    }
+    assert_eq!(oddities(&frfs).1, []);
 }
 
 #[test]
