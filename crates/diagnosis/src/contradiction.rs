@@ -2,8 +2,8 @@
 //!
 //! Any linear structure's FRFs are sums over modes with common poles. Where a free fit of such a sum leaves
 //! next to nothing but on few lines, and those are off in the FRFs at large, it is these lines that are
-//! wrong, and no model has to explain them. A single wrong line is told by its neighbours; where more of them
-//! lie side by side, the fit of all lines tells.
+//! wrong, and no model has to explain them. A single wrong line is told by its neighbours, of any FRF, or
+//! where that is too many, of the FRFs at large; where more of them lie side by side, the fit of all lines tells.
 
 use crate::modal::recorded;
 use crate::settings::lines::contradiction::{
@@ -11,7 +11,7 @@ use crate::settings::lines::contradiction::{
 };
 use crate::{DiagnosisError, Hypothesis, Observation};
 use jointscope_fixture::Fixture;
-use jointscope_frf::{breaks, lone_lines};
+use jointscope_frf::{breaks, lone_lines, lone_lines_of_any};
 use jointscope_lumped::Assembly;
 use jointscope_spectra::FrfSet;
 
@@ -29,8 +29,8 @@ pub fn contradictory_lines(fixture: &Fixture, frfs: &FrfSet) -> Result<Vec<(f64,
 /// Bands (Hz) of lines that contradict all others; none where there is nothing of the kind.
 pub(crate) fn contradictory(observation: &Observation, nominal: &Hypothesis) -> Vec<(f64, f64)> {
     let breaks = breaks(observation.frfs(), observation.weights());
-    let lone = lone_lines(observation.frfs(), observation.weights());
-    if breaks.is_empty() && lone.is_empty() {
+    let lone = [lone_lines_of_any, lone_lines].map(|lone| lone(observation.frfs(), observation.weights()));
+    if breaks.is_empty() && lone.iter().all(Vec::is_empty) {
         return Vec::new();
     }
     let hz = observation.lines().hz().to_vec();
@@ -47,14 +47,16 @@ pub(crate) fn contradictory(observation: &Observation, nominal: &Hypothesis) -> 
     let whole = without(&wrong);
     let before = whole.as_ref().map_or(f64::INFINITY, |(_, modes)| modes.chi2_per_dof);
     let much_better = |chi2_per_dof: f64| chi2_per_dof < REMAINING_SHARE * before;
-    let single = lines_of_no_mode(&lone, &hz, nominal);
-    if single.contains(&true)
-        && !many(&single)
-        && let Some((_, modes)) = without(&single)
-        // A free fit may follow a wrong line with a mode of its own: then nothing is lost without both.
-        && (much_better(modes.chi2_per_dof) || before.max(modes.chi2_per_dof) < MISFIT)
-    {
-        return bands(&hz, &single);
+    for lone in &lone {
+        let single = lines_of_no_mode(lone, &hz, nominal);
+        if single.contains(&true)
+            && !many(&single)
+            && let Some((_, modes)) = without(&single)
+            // A free fit may follow a wrong line with a mode of its own: then nothing is lost without both.
+            && (much_better(modes.chi2_per_dof) || modes.chi2_per_dof < MISFIT)
+        {
+            return bands(&hz, &single);
+        }
     }
     if before < MISFIT {
         return Vec::new();

@@ -17,7 +17,7 @@ const CERTAIN: f64 = 1.5;
 /// 1/variance of the real part, and of the imaginary part, FRF after FRF.
 pub fn breaks(frfs: &FrfSet, weights: &[f64]) -> Vec<usize> {
     let (hz, mut fit) = (frfs.lines().hz(), LocalRationalFit::new());
-    in_half_of(frfs, weights, |values, weights, line| {
+    in_so_many(frfs, weights, half_of(frfs), |values, weights, line| {
         fit.about(hz, values, line, NEIGHBOURS).is_some_and(|local| {
             let off = weights[line] * local.residual.norm_sqr() / (1.0 - local.leverage).max(1e-3);
             local.leverage < FOLLOWED && off > BREAKS
@@ -29,8 +29,17 @@ pub fn breaks(frfs: &FrfSet, weights: &[f64]) -> Vec<usize> {
 /// agree that they are: single lines of mains hum and of tones from elsewhere. A peak shows on the lines
 /// beside it, however sharp. `weights` as for [`breaks`].
 pub fn lone_lines(frfs: &FrfSet, weights: &[f64]) -> Vec<usize> {
+    lone_in_so_many(frfs, weights, half_of(frfs))
+}
+
+/// The same of lines that any of the FRFs has there: a value that was spoilt by itself.
+pub fn lone_lines_of_any(frfs: &FrfSet, weights: &[f64]) -> Vec<usize> {
+    lone_in_so_many(frfs, weights, 1)
+}
+
+fn lone_in_so_many(frfs: &FrfSet, weights: &[f64], least: usize) -> Vec<usize> {
     let (hz, mut fit) = (frfs.lines().hz(), LocalRationalFit::new());
-    in_half_of(frfs, weights, |values, weights, line| {
+    in_so_many(frfs, weights, least, |values, weights, line| {
         fit.beside(hz, values, line, NEIGHBOURS).is_some_and(|expected| {
             let off = weights[line] * (values[line] - expected.value).norm_sqr() / (1.0 + expected.leverage);
             let beside = 0.5 * (weights[line - 1] + weights[line + 1]) * expected.variance;
@@ -39,10 +48,15 @@ pub fn lone_lines(frfs: &FrfSet, weights: &[f64]) -> Vec<usize> {
     })
 }
 
-/// The lines, by index, that at least half of the FRFs, by their values and weights, have `off`.
-fn in_half_of(
+fn half_of(frfs: &FrfSet) -> usize {
+    frfs.pairs().len().div_ceil(2)
+}
+
+/// The lines, by index, that at least so many of the FRFs, by their values and weights, have `off`.
+fn in_so_many(
     frfs: &FrfSet,
     weights: &[f64],
+    least: usize,
     mut off: impl FnMut(&[Complex64], &[f64], usize) -> bool,
 ) -> Vec<usize> {
     let (lines, count) = (frfs.lines().len(), frfs.pairs().len());
@@ -51,5 +65,5 @@ fn in_half_of(
         let (values, weights) = (frfs.values(index), &weights[index * lines..(index + 1) * lines]);
         having.iter_mut().enumerate().for_each(|(line, n)| *n += usize::from(off(values, weights, line)));
     }
-    (0..lines).filter(|&line| having[line] > 0 && 2 * having[line] >= count).collect()
+    (0..lines).filter(|&line| having[line] >= least).collect()
 }

@@ -1,7 +1,7 @@
 //! Resonances that move among FRFs of one response, and lines that break off.
 
 use crate::common::{accelerances, mode};
-use jointscope_frf::{Drift, breaks, lone_lines, resonant_lines};
+use jointscope_frf::{Drift, breaks, lone_lines, lone_lines_of_any, resonant_lines};
 use jointscope_samples::Noise;
 use jointscope_spectra::{FrfForm, FrfSet, SpectralLines};
 use num_complex::Complex64;
@@ -168,20 +168,24 @@ fn lines_break_off_where_half_of_the_frfs_leave_their_course_and_not_where_one_o
 #[test]
 fn a_single_wrong_line_stands_alone_however_far_off_it_is() {
     let channels = [("4", "1"), ("3", "1"), ("2", "1")];
-    let lone = |frfs: usize, by: f64| {
+    let set = |frfs: usize, by: f64| {
         let mut random = Noise::from_state(9);
-        let set = accelerances(&lines(), &channels, |frf, hz| {
+        accelerances(&lines(), &channels, |frf, hz| {
             let tone = if frf < frfs && hz == 150.0 { by } else { 0.0 };
             resonance(hz, NATURAL[0]) + random.complex(NOISE) + tone * Complex64::cis(frf as f64)
-        });
-        lone_lines(&set, &vec![2.0 / NOISE; 3000])
+        })
     };
+    let weights = vec![2.0 / NOISE; 3000];
+    let lone = |frfs: usize, by: f64| lone_lines(&set(frfs, by), &weights);
+    let of_any = |frfs: usize, by: f64| lone_lines_of_any(&set(frfs, by), &weights);
     for deviations in [20.0, 200.0, 2e4] {
         let tone = deviations * NOISE.sqrt();
         assert_eq!([lone(3, tone), lone(2, tone)], [[149], [149]], "{deviations} deviations");
         assert!(lone(1, tone).is_empty(), "one FRF of three may have a fault of its own");
+        assert_eq!(of_any(1, tone), [149]);
     }
     assert!(lone(3, 5.0 * NOISE.sqrt()).is_empty());
+    assert!(of_any(3, 5.0 * NOISE.sqrt()).is_empty());
 }
 
 #[test]
@@ -192,6 +196,6 @@ fn a_peak_of_a_hundredth_of_a_lines_width_is_no_lone_line_wherever_it_lies() {
         let set = accelerances(&lines(), &[("4", "1")], |_, hz| {
             mode(hz, natural, 0.01 / natural) + random.complex(NOISE)
         });
-        assert!(lone_lines(&set, &vec![2.0 / NOISE; 1000]).is_empty(), "{off} lines beside one");
+        assert!(lone_lines_of_any(&set, &vec![2.0 / NOISE; 1000]).is_empty(), "{off} lines beside one");
     }
 }

@@ -223,6 +223,20 @@ fn single_lines_of_hum_are_left_out_and_no_others_with_them() {
 }
 
 #[test]
+fn values_of_one_frf_that_were_spoilt_by_themselves_are_left_out() {
+    let (fixture, frfs) = disturbed(|_, value| value);
+    let spoilt = |at: usize, value: Complex64| match at {
+        460 => 20.0 * value,
+        533 => 100.0 * value,
+        700 => 0.02 * value,
+        _ => value,
+    };
+    let diagnosis = Diagnosis::of(&fixture, &frfs.with_values(spoilt), &DiagnosisOptions::default()).unwrap();
+    assert_eq!(diagnosis.verdict, Verdict::Consistent, "{}", told(&diagnosis));
+    assert_eq!(diagnosis.contradictory, [(152.5, 152.5), (335.0, 335.0), (752.5, 752.5)]);
+}
+
+#[test]
 fn the_one_record_that_is_in_g_is_named() {
     let (fixture, frfs) = disturbed(|_, value| value);
     let frfs = frfs.with_values(|at, value| if at / 400 == 2 { value / 9.80665 } else { value });
