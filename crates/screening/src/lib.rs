@@ -102,7 +102,7 @@ pub fn screened(frfs: FrfSet, fixture: &Fixture) -> Result<Screened, ScreeningEr
     let mut oddities = Vec::new();
     let mut frfs = alive(frfs, &mut oddities)?;
     if phase::lacks(&frfs) && is_damped(&frfs, fixture) {
-        let (left, without) = phase::with_phase(&frfs)?;
+        let (left, without) = phase::with_phase(&frfs).ok_or(ScreeningError::NoPhase)?;
         frfs = left;
         oddities.push(without);
     }
