@@ -1,7 +1,7 @@
 """What a diagnosis makes of recordings that hold something no structure's model has.
 
 Two blocks on a strip, drawn once from their tolerances, with nothing or one thing left out, are synthesized by the program; NumPy then spoils each recording in one of seven ways and adds
-noise of 0.1 % with the coherence that says so. One line a diagnosis: verdict, processor time, names.
+noise of 0.1 % with the coherence that says so, or adds the noise and files the recording in one of seven wrong ways. One line a diagnosis: verdict, processor time, names.
 
     python3 docs/development/checks/spoilt_recordings.py PROGRAM [--only WORD …]
 
@@ -104,18 +104,57 @@ def phase(h, x, o, i, random, size):
     return h * np.exp(0.01j)
 
 
+# --- how a recording is filed: values and lines of noisy ones, the FRF being the `n`-th ----------------------------------------------------------------------------
+
+def gap(h, x, n):
+    """One FRF exactly zero on twenty lines, as pyuff writes NaN."""
+    return np.where((n == 0) & (np.abs(np.arange(len(x)) - 210) < 10), 0, h), x
+
+
+def padded(h, x, n):
+    """All FRFs exactly zero from 850 Hz on, as of an analyser that exports the band its filters pass."""
+    return np.where(x >= 850, 0, h), x
+
+
+def shorter(h, x, n):
+    """One FRF without the lines from 850 Hz on."""
+    return (h[x < 850], x[x < 850]) if n == 1 else (h, x)
+
+
+def magnitude(h, x, n):
+    """One FRF without its phase."""
+    return np.abs(h) + 0j if n == 1 else h, x
+
+
+def degrees(h, x, n):
+    """Magnitude and phase in degrees for real and imaginary part."""
+    return np.abs(h) + 1j * np.degrees(np.angle(h)), x
+
+
+def decibels(h, x, n):
+    """Level in dB and phase in radians for real and imaginary part."""
+    return 20 * np.log10(np.abs(h)) + 1j * np.angle(h), x
+
+
+def one_value(h, x, n):
+    """A value of one FRF a hundred times what it is."""
+    return np.where((n == 1) & (np.arange(len(x)) == 333), 100 * h, h), x
+
+
+FILED = {f.__name__: f for f in [gap, padded, shorter, magnitude, degrees, decibels, one_value]}
 SPOILT = {"nothing": lambda h, *_: h, **{f.__name__: f for f in [ripple, other_plane, gains, roving, low_noise, offset, phase]}}
 
 
-def written(path, sets, spoil):
+def written(path, sets, spoil=lambda h, *_: h, filed=lambda h, x, n: (h, x)):
     size = np.sqrt(np.mean([np.mean(np.abs(s["data"]) ** 2) for s in sets]))
     random = np.random.default_rng(7)
     file = pyuff.UFF(str(path))
-    for frf in sets:
+    for n, frf in enumerate(sets):
         x = np.asarray(frf["x"])
         h = spoil(np.asarray(frf["data"]), x, str(frf["rsp_node"]), str(frf["ref_node"]), random, size)
         h = h * (1 + NOISE / np.sqrt(2) * (random.normal(size=len(x)) + 1j * random.normal(size=len(x))))
-        label = {"id5": f"averages {AVERAGES}"}
+        h, x = filed(h, x, n)
+        label = {"id5": f"averages {AVERAGES}", "x": x}
         file.write_sets({**frf, **label, "data": h}, "add")
         none = {"ordinate_spec_data_type": 0, "orddenom_spec_data_type": 0}
         coherence = np.full(len(x), 1 / (1 + 2 * AVERAGES * NOISE**2))
@@ -140,11 +179,12 @@ def main():
             words = [program, "synthesize", "truth.json", *wanted, "--lines", LINES, "-o", "exact.uff"]
             subprocess.run(words, cwd=folder, check=True, capture_output=True)
             sets = [s for s in pyuff.UFF(str(folder / "exact.uff")).read_sets() if s["type"] == 58]
-            for how, spoil in SPOILT.items():
+            ways = {how: {"spoil": spoil} for how, spoil in SPOILT.items()} | {how: {"filed": filed} for how, filed in FILED.items()}
+            for how, way in ways.items():
                 if given.only and what not in given.only and how not in given.only:
                     continue
                 (folder / "frfs.uff").unlink(missing_ok=True)
-                written(folder / "frfs.uff", sets, spoil)
+                written(folder / "frfs.uff", sets, **way)
                 before = used()
                 words = [program, "diagnose", "fixture.json", "frfs.uff", "-o", "out"]
                 done = subprocess.run(words, cwd=folder, capture_output=True, text=True, env=alone)
