@@ -32,8 +32,10 @@ pub(crate) fn common_lines<'a>(
 ) -> Result<(SpectralLines, Vec<Part>), RecordingError> {
     let own: Vec<SpectralLines> =
         frfs.iter().map(|entry| lines_of(entry, cache)).collect::<Result<_, _>>()?;
-    let other = |index: usize| on_other_lines((frfs[0], &own[0]), (frfs[index], &own[index]));
-    let mut all = own[0].clone();
+    // The first of the longest before all others: parts that do not overlap may both be parts of it.
+    let longest = (0..own.len()).rev().max_by_key(|&index| own[index].len()).unwrap_or(0);
+    let other = |index: usize| on_other_lines((frfs[longest], &own[longest]), (frfs[index], &own[index]));
+    let mut all = own[longest].clone();
     for (index, lines) in own.iter().enumerate() {
         if !all.agrees_with(lines) {
             all = all.joined(lines).ok_or_else(|| other(index))?;

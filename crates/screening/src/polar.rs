@@ -49,7 +49,8 @@ impl Polar {
 
 /// How the numbers are meant, where the second of them are phases: those of a structure lie near whole half
 /// turns on all lines but those about its resonances, and no imaginary parts lie near numbers of that kind. Levels
-/// like those of the fixture's FRFs, `modelled`, tell magnitudes from decibels where no magnitude is negative.
+/// like those of the fixture's FRFs, `modelled`, tell magnitudes from decibels, or that no magnitude is negative: of
+/// a channel that points the other way it is, and its phase falls as that of a conjugate.
 pub(crate) fn polar(frfs: &FrfSet, modelled: Option<&[Complex64]>) -> Option<Polar> {
     let values = frfs.all_values();
     let [of_magnitudes, of_decibels] = if are_phases(values, 180.0) {
@@ -59,10 +60,10 @@ pub(crate) fn polar(frfs: &FrfSet, modelled: Option<&[Complex64]>) -> Option<Pol
     } else {
         return None;
     };
-    if values.iter().any(|value| value.re < 0.0) {
-        return Some(of_decibels);
-    }
-    let Some(modelled) = modelled else { return Some(of_magnitudes) };
+    let Some(modelled) = modelled else {
+        let is_level = values.iter().any(|value| value.re < 0.0);
+        return Some(if is_level { of_decibels } else { of_magnitudes });
+    };
     let apart = |polar: Polar| {
         let read: Vec<Complex64> = values.iter().map(|value| polar.value(*value)).collect();
         median(ratios_apart(&read, modelled)).unwrap_or(f64::INFINITY)

@@ -103,6 +103,16 @@ fn magnitudes_and_phases_in_the_place_of_real_and_imaginary_parts_are_taken_as_w
         }
     }
     assert_eq!(oddities(&frfs).1, []);
+    // One sensor points the other way, as the file's direction says: both of its numbers have the other sign.
+    let turned = |at: usize, value: Complex64| {
+        let written = Complex64::new(value.norm(), value.arg().to_degrees());
+        if at < 400 { -written } else { written }
+    };
+    let (back, found) = oddities(&frfs.clone().with_values(turned));
+    assert_eq!(found, [Oddity::Polar(Polar::Degrees), Oddity::Conjugated(vec![pairs()[0].clone()])]);
+    for (a, b) in back.values(0).iter().zip(frfs.values(0)) {
+        assert!((a + b).norm() < 1e-12 * b.norm());
+    }
 }
 
 #[test]

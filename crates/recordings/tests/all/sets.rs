@@ -163,6 +163,14 @@ fn frfs_over_different_parts_of_one_axis_are_read_together_each_measured_on_its_
     assert_eq!(measured(0), [true, true, true, false]);
     assert_eq!(measured(1), [false, true, true, true]);
     assert_eq!(frfs.coherence(1).unwrap(), [0.0, 0.9, 0.8, 0.7]);
+    // Two parts that do not overlap are parts of what a third one has.
+    let long = |dataset: Dataset58| Dataset58 {
+        abscissa: Abscissa::Even { start: 10.0, step: 2.5, count: 7 },
+        data: Data::Complex(vec![Complex64::new(1.0, 0.1); 7]),
+        ..dataset
+    };
+    let parts = vec![frf((3, 2), (1, 2)), on(frf((4, 2), (1, 2)), 20.0, 2.5), long(frf((3, 2), (2, 2)))];
+    assert_eq!(read(parts).unwrap().frfs().unwrap().lines().len(), 7);
 }
 
 #[test]
