@@ -51,7 +51,7 @@ impl MaskReason {
     pub fn why(self) -> &'static str {
         match self {
             MaskReason::ZeroFrequency => "no displacement at 0 Hz",
-            MaskReason::NoCoherence => "too few FRFs were measured there",
+            MaskReason::NoCoherence => "zero coherence, or no value, leaves too few FRFs",
             MaskReason::Undetermined => "the FRFs leave a motion undetermined",
             MaskReason::SingularFrf => "the FRF matrix is singular",
         }

@@ -260,17 +260,23 @@ fn a_line_at_zero_and_lines_without_coherence_are_masked_counted_and_told() {
 }
 
 #[test]
-fn a_line_whose_frf_matrix_is_singular_is_masked() {
+fn a_line_whose_frf_matrix_is_singular_is_masked_and_one_without_values_left_out() {
     let bench = Bench::synthesized("singular", TWO_BLOCKS, "50:1000:10");
-    bench.rewrite("frf.uff", "dead.uff", |datasets| {
-        for dataset in datasets.iter_mut() {
-            let Data::Complex(values) = &mut dataset.data else { panic!("an FRF is complex") };
-            values[10] = 0.0.into();
-        }
-    });
-    let said = bench.done(&["decompose", "two.json", "dead.uff", "-o", "out"]);
-    assert!(said.contains("1 line masked: the FRF matrix is singular"), "{said}");
+    let with = |name: &str, value: f64| {
+        bench.rewrite("frf.uff", name, |datasets| {
+            for dataset in datasets.iter_mut() {
+                let Data::Complex(values) = &mut dataset.data else { panic!("an FRF is complex") };
+                values[10] = value.into();
+            }
+        });
+        bench.done(&["decompose", "two.json", name, "-o", "out"])
+    };
+    let alike = with("alike.uff", 1.0);
+    assert!(alike.contains("1 line masked: the FRF matrix is singular"), "{alike}");
     assert_eq!(bench.json("out/stiffness.json")["masked"][0]["frequency"], 150.0);
+    let empty = with("empty.uff", 0.0);
+    assert!(empty.contains("95 of 95 lines solved"), "{empty}");
+    assert!(empty.contains("3/1, 3/2, 4/1, 4/2 at 150 Hz"), "{empty}");
 }
 
 #[test]
