@@ -11,7 +11,7 @@ use crate::settings::lines::contradiction::{
 };
 use crate::{DiagnosisError, Hypothesis, Observation};
 use jointscope_fixture::Fixture;
-use jointscope_frf::{breaks, lone_lines, lone_lines_of_any};
+use jointscope_frf::{breaks, lone_lines};
 use jointscope_lumped::Assembly;
 use jointscope_spectra::FrfSet;
 
@@ -29,8 +29,8 @@ pub fn contradictory_lines(fixture: &Fixture, frfs: &FrfSet) -> Result<Vec<(f64,
 /// Bands (Hz) of lines that contradict all others; none where there is nothing of the kind.
 pub(crate) fn contradictory(observation: &Observation, nominal: &Hypothesis) -> Vec<(f64, f64)> {
     let breaks = breaks(observation.frfs(), observation.weights());
-    let lone = [lone_lines_of_any, lone_lines].map(|lone| lone(observation.frfs(), observation.weights()));
-    if breaks.is_empty() && lone.iter().all(Vec::is_empty) {
+    let [of_any, of_half] = lone_lines(observation.frfs(), observation.weights());
+    if breaks.is_empty() && of_any.is_empty() {
         return Vec::new();
     }
     let hz = observation.lines().hz().to_vec();
@@ -47,8 +47,9 @@ pub(crate) fn contradictory(observation: &Observation, nominal: &Hypothesis) -> 
     let whole = without(&wrong);
     let before = whole.as_ref().map_or(f64::INFINITY, |(_, modes)| modes.chi2_per_dof);
     let much_better = |chi2_per_dof: f64| chi2_per_dof < REMAINING_SHARE * before;
-    for lone in &lone {
-        let single = lines_of_no_mode(lone, &hz, nominal);
+    let mut singles = [of_any, of_half].map(|lone| lines_of_no_mode(&lone, &hz, nominal)).to_vec();
+    singles.dedup();
+    for single in singles {
         if single.contains(&true)
             && !many(&single)
             && let Some((_, modes)) = without(&single)

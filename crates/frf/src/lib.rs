@@ -32,7 +32,7 @@ mod merged;
 pub mod noise;
 mod rigid_motion;
 
-pub use breaks::{breaks, lone_lines, lone_lines_of_any};
+pub use breaks::{breaks, lone_lines};
 pub use drift::{Drift, resonant_lines};
 pub use merged::KnownNoise;
 pub use rigid_motion::{BlockChannel, BlockFrf, BlockLayout, MaskReason, RigidMotionError, fit_rigid_motion};

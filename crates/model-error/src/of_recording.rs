@@ -63,20 +63,17 @@ fn with_expected(recording: WeightedFrfs, fit: FreeFit, besides: &[Pole], all: &
     other.filter(|other| fit.is_worse(other, recording)).unwrap_or(fit)
 }
 
-/// What no poles explain of a recording above its lowest lines, where suspensions lie that no lines tell from a
-/// mass line: χ² per degree of freedom there, at least one, and degrees of freedom. `fit` is that of all lines.
-pub(crate) fn unexplained_where_resolved(recording: WeightedFrfs, fit: &FreeFit) -> Option<(f64, f64)> {
+/// A recording above its lowest lines, where suspensions lie that no lines tell from a mass line, and the free
+/// fit of it; `fit` is that of all lines.
+pub(crate) fn where_resolved(recording: WeightedFrfs, fit: &FreeFit) -> Option<(Above, FreeFit)> {
     let above = Above::line(recording, RESOLVED_LINES)?;
-    let recording = above.recording();
-    let (inside, outside) = fit.poles.split_at(fit.inside);
-    let is_within = |pole: &Pole| pole.omega >= TAU * above.frfs.lines().hz()[0];
-    let (within, low): (Vec<Pole>, Vec<Pole>) = inside.iter().copied().partition(is_within);
-    let fit = free_fit(recording, within, &[outside, &low].concat())?;
-    Some((fit.chi2_per_dof(recording).max(1.0), recording.degrees()))
+    let [low, within] = above.poles_below_and_within(fit);
+    let fit = free_fit(above.recording(), within, &[&fit.poles[fit.inside..], &low].concat())?;
+    Some((above, fit))
 }
 
 /// A recording without its lowest lines.
-struct Above {
+pub(crate) struct Above {
     frfs: FrfSet,
     weights: Vec<f64>,
 }
@@ -105,8 +102,14 @@ impl Above {
         Some(Above { frfs: recording.frfs.on_lines(|line| line >= first)?, weights })
     }
 
-    fn recording(&self) -> WeightedFrfs<'_> {
+    pub(crate) fn recording(&self) -> WeightedFrfs<'_> {
         WeightedFrfs { frfs: &self.frfs, weights: &self.weights }
+    }
+
+    /// The poles in the band of a fit of all lines: those below these lines, and the others.
+    fn poles_below_and_within(&self, fit: &FreeFit) -> [Vec<Pole>; 2] {
+        let from = TAU * self.frfs.lines().hz()[0];
+        fit.poles[..fit.inside].iter().partition::<Vec<Pole>, _>(|pole| pole.omega < from).into()
     }
 }
 
@@ -138,9 +141,8 @@ impl RecordedModes {
                 false => with_expected(recording, fit, &unpaired, &all).recorded_modes(recording),
             };
         };
-        let (recording, from) = (above.recording(), TAU * above.frfs.lines().hz()[0]);
-        let (low, within): (Vec<Pole>, Vec<Pole>) =
-            fit.poles[..fit.inside].iter().partition(|p| p.omega < from);
+        let recording = above.recording();
+        let [low, within] = above.poles_below_and_within(&fit);
         let fit = free_fit(recording, within, &fit.poles[fit.inside..])?;
         let besides: Vec<Pole> = low.into_iter().chain(unpaired).collect();
         let fit = with_expected(recording, fit, &besides, &all);

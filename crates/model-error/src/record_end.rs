@@ -22,7 +22,7 @@ mod ringing;
 
 use crate::basis::TERMS;
 use crate::free_fit::FreeFit;
-use crate::of_recording::{completed, poles_of, unexplained_where_resolved};
+use crate::of_recording::{completed, poles_of, where_resolved};
 use crate::recording::WeightedFrfs;
 use crate::settings::record_end::{
     LEAST_GAIN, LEAST_LEFT, LEFT_OF_MISFIT, LONGEST_BLOW, NEAR_LINES, ROUNDS, SHORTEST, STEPS,
@@ -59,8 +59,8 @@ impl RecordEnd {
         if most_gain(&as_recorded, recording) < LEAST_GAIN {
             return None;
         }
-        let (left, degrees) = unexplained_where_resolved(recording, &as_recorded)?;
-        if degrees * left.ln() < LEAST_GAIN {
+        let (above, resolved) = where_resolved(recording, &as_recorded)?;
+        if most_gain(&resolved, above.recording()) < LEAST_GAIN {
             return None;
         }
         let highest = hz[hz.len() - 1];

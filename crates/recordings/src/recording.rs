@@ -311,7 +311,8 @@ fn level<'a>(
             let start = start.ok_or_else(|| on_other_lines((entry, &part.lines), (coherence, &found)))?;
             let values = coherence.function.coherence().map_err(|problem| coherence.refuse(problem))?;
             if let Some(values) = notes.usable(entry.pair.to_string(), values) {
-                let of_frf = &values[start..start + part.lines.len()];
+                // Of other than as many values as lines the set refuses them.
+                let of_frf = values.get(start..start + part.lines.len()).unwrap_or(&values);
                 set.set_coherence(index, part.over_all_lines(of_frf))?;
             }
             if averages.is_none() {

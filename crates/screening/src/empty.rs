@@ -2,7 +2,6 @@
 
 use crate::Oddity;
 use jointscope_spectra::FrfSet;
-use num_complex::Complex64;
 
 /// The lines above 0 Hz on which FRFs are exactly zero, as an [oddity](Oddity::Empty). At 0 Hz the
 /// accelerance of a supported structure is.
@@ -24,5 +23,5 @@ pub(crate) fn without_empty_lines(frfs: FrfSet) -> FrfSet {
 }
 
 fn is_empty(frfs: &FrfSet, index: usize, line: usize) -> bool {
-    frfs.lines().hz()[line] > 0.0 && frfs.values(index)[line] == Complex64::ZERO
+    frfs.lines().hz()[line] > 0.0 && !frfs.has_value(index, line)
 }

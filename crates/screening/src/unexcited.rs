@@ -4,7 +4,6 @@ use crate::Oddity;
 use crate::levels::median;
 use crate::settings::unexcited::{LEAST_COHERENCE, LEAST_SHARE, WINDOW_LINES};
 use jointscope_spectra::{FrfPair, FrfSet};
-use num_complex::Complex64;
 
 /// Channels whose FRFs all lack coherence from some line to the end of the band.
 pub(crate) fn unexcited(frfs: &FrfSet) -> Vec<Oddity> {
@@ -39,10 +38,10 @@ pub(crate) fn unexcited(frfs: &FrfSet) -> Vec<Oddity> {
 
 /// The first line of those on which an FRF has a value from which on it has no coherence.
 fn start_of(frfs: &FrfSet, index: usize) -> Option<usize> {
-    let (values, coherence) = (frfs.values(index), frfs.coherence(index)?);
-    let told: Vec<usize> = (0..values.len()).filter(|&line| values[line] != Complex64::ZERO).collect();
-    let of_these: Vec<f64> = told.iter().map(|&line| coherence[line]).collect();
-    Some(told[start(&of_these)?])
+    let coherence = frfs.coherence(index)?;
+    let with_value: Vec<usize> = (0..coherence.len()).filter(|&line| frfs.has_value(index, line)).collect();
+    let of_these: Vec<f64> = with_value.iter().map(|&line| coherence[line]).collect();
+    Some(with_value[start(&of_these)?])
 }
 
 /// The first line from which on there is no coherence, where that is a part of the band worth a word.

@@ -222,10 +222,15 @@ impl FrfSet {
         self.coherence[index].as_deref()
     }
 
-    /// Whether FRF `index` has a measured value on a line: one without coherence is none, and neither is one
-    /// of exactly zero, which files hold where nothing was recorded.
+    /// Whether FRF `index` has a value on a line: one of exactly zero is none, which files hold where nothing
+    /// was recorded.
+    pub fn has_value(&self, index: usize, line: usize) -> bool {
+        self.values(index)[line] != Complex64::ZERO
+    }
+
+    /// Whether that was measured: one without coherence was not.
     pub fn is_measured(&self, index: usize, line: usize) -> bool {
-        self.values(index)[line] != Complex64::ZERO && self.coherence(index).is_none_or(|c| c[line] > 0.0)
+        self.has_value(index, line) && self.coherence(index).is_none_or(|c| c[line] > 0.0)
     }
 
     /// Attaches the coherence of FRF `index`.

@@ -1,6 +1,6 @@
 //! Variances by coherence and number of averages.
 
-use super::smoothing::{FEWEST, FLOOR, WINDOW, around, smoothed};
+use super::smoothing::{FEWEST, FLOOR, WINDOW, around, is_measured, smoothed};
 use num_complex::Complex64;
 
 /// The least of it where levels are followed from line to line.
@@ -22,8 +22,7 @@ pub(crate) fn from_coherence(values: &[Complex64], coherence: &[f64], averages: 
     let degrees = 2.0 * f64::from(averages.max(2) - 1);
     let reach = ((TOLD / degrees / 2.0).ceil() as usize).clamp(SHORTEST, WINDOW);
     let level = |line: usize| {
-        let measured = |&i: &usize| coherence[i] > 0.0 && values[i] != Complex64::ZERO;
-        let usable = around(line, reach, raw.len()).filter(measured);
+        let usable = around(line, reach, raw.len()).filter(|&i| is_measured(values, coherence, i));
         let near: Vec<(f64, f64)> = usable.map(|i| (i as f64 - line as f64, ratios[i])).collect();
         // What a level from ν degrees of freedom divides is too large in the mean by ν/(ν − 2).
         let all = degrees * near.len() as f64;

@@ -38,8 +38,7 @@ pub fn smoothed(
         _ => 1.0,
     };
     let raw: Vec<f64> = of_lines.iter().enumerate().map(|(line, variance)| variance * power(line)).collect();
-    let measured = |(value, gamma2): (&Complex64, &f64)| *gamma2 > 0.0 && *value != Complex64::ZERO;
-    let usable: Vec<bool> = values.iter().zip(coherence).map(measured).collect();
+    let usable: Vec<bool> = (0..values.len()).map(|line| is_measured(values, coherence, line)).collect();
     let mean = |line: usize| {
         let (mut sum, mut count) = (0.0, 0.0f64);
         for i in around(line, reach, raw.len()).filter(|&i| usable[i]) {
@@ -52,6 +51,11 @@ pub fn smoothed(
     let size: Vec<f64> = values.iter().map(|v| v.norm_sqr()).collect();
     let smoothed = smooth(&size, &raw, &usable, begun, 3, f64::INFINITY, reach);
     smoothed.iter().enumerate().map(|(line, variance)| variance / power(line)).collect()
+}
+
+/// As [`FrfSet::is_measured`](jointscope_spectra::FrfSet::is_measured), of one FRF's values.
+pub(super) fn is_measured(values: &[Complex64], coherence: &[f64], line: usize) -> bool {
+    coherence[line] > 0.0 && values[line] != Complex64::ZERO
 }
 
 /// Lines about one, on each side up to `reach`.

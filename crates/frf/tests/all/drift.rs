@@ -1,7 +1,7 @@
 //! Resonances that move among FRFs of one response, and lines that break off.
 
 use crate::common::{accelerances, mode};
-use jointscope_frf::{Drift, breaks, lone_lines, lone_lines_of_any, resonant_lines};
+use jointscope_frf::{Drift, breaks, lone_lines, resonant_lines};
 use jointscope_samples::Noise;
 use jointscope_spectra::{FrfForm, FrfSet, SpectralLines};
 use num_complex::Complex64;
@@ -176,8 +176,8 @@ fn a_single_wrong_line_stands_alone_however_far_off_it_is() {
         })
     };
     let weights = vec![2.0 / NOISE; 3000];
-    let lone = |frfs: usize, by: f64| lone_lines(&set(frfs, by), &weights);
-    let of_any = |frfs: usize, by: f64| lone_lines_of_any(&set(frfs, by), &weights);
+    let lone = |frfs: usize, by: f64| lone_lines(&set(frfs, by), &weights)[1].clone();
+    let of_any = |frfs: usize, by: f64| lone_lines(&set(frfs, by), &weights)[0].clone();
     for deviations in [20.0, 200.0, 2e4] {
         let tone = deviations * NOISE.sqrt();
         assert_eq!([lone(3, tone), lone(2, tone)], [[149], [149]], "{deviations} deviations");
@@ -196,6 +196,6 @@ fn a_peak_of_a_hundredth_of_a_lines_width_is_no_lone_line_wherever_it_lies() {
         let set = accelerances(&lines(), &[("4", "1")], |_, hz| {
             mode(hz, natural, 0.01 / natural) + random.complex(NOISE)
         });
-        assert!(lone_lines_of_any(&set, &vec![2.0 / NOISE; 1000]).is_empty(), "{off} lines beside one");
+        assert!(lone_lines(&set, &vec![2.0 / NOISE; 1000])[0].is_empty(), "{off} lines beside one");
     }
 }

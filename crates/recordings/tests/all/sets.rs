@@ -174,6 +174,14 @@ fn frfs_over_different_parts_of_one_axis_are_read_together_each_measured_on_its_
 }
 
 #[test]
+fn a_coherence_of_fewer_values_than_lines_is_refused() {
+    let gamma = coherence((4, 2), (1, 2), [0.9, 0.8, 0.7]);
+    let short = Dataset58 { data: Data::Real(vec![0.9, 0.8]), ..gamma };
+    let error = read(vec![frf((4, 2), (1, 2)), short]).unwrap_err();
+    assert!(matches!(error, RecordingError::Spectra(_)), "{error}");
+}
+
+#[test]
 fn the_same_numbers_in_other_units_of_frequency_are_other_lines() {
     let kilohertz = Axis::new(18, "Frequency", "kHz");
     let datasets = vec![frf((3, 2), (1, 2)), Dataset58 { abscissa_axis: kilohertz, ..frf((4, 2), (1, 2)) }];
